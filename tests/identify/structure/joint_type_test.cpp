@@ -7,8 +7,10 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <numbers>
 
 #include "identify/example_machine.hpp"
+#include "kinfer/geometry/rotation.hpp"
 #include "kinfer/identify/structure/ordered_motion.hpp"
 #include "kinfer/io/recording/ins_csv.hpp"
 #include "kinfer/simulate/ins_recording.hpp"
@@ -35,8 +37,9 @@ SegmentMotion segment_of(const std::string& name, const std::vector<FrameState>&
 }
 
 /// A swinging parent and a child behind the leaves, measured without error.
-RecordedMotion two_segments(const std::vector<DhLeaf>& leaves, const std::vector<JointSignal>& signals) {
-  const auto parent = swinging_parent(wave(0.5, 0.7, 0.3));
+RecordedMotion two_segments(const std::vector<DhLeaf>& leaves, const std::vector<JointSignal>& signals,
+                            std::size_t rows = 600) {
+  const auto parent = swinging_parent(wave(0.5, 0.7, 0.3, rows));
   RecordedMotion motion;
   motion.period = 0.01;
   for (std::size_t row = 0; row < parent.size(); ++row) motion.time.push_back(0.01 * static_cast<double>(row));
@@ -78,6 +81,29 @@ TEST(JointType, CountsTheRotationAxesBetweenTwoSegments) {
   EXPECT_EQ(universal.type, EstimatedJointType::universal);
   EXPECT_EQ(type_of(two_segments({mount, first, second, third, end}, three_waves())).type,
             EstimatedJointType::spherical);
+}
+
+/// The child's headings drift by 6° within minutes, as those of gyroscopes do.
+RecordedMotion with_heading_drift(RecordedMotion motion) {
+  SegmentMotion& child = motion.segments.back();
+  for (std::size_t row = 0; row < motion.rows(); ++row) {
+    const Mat3 turn = rot_z(0.1 * std::sin(2.0 * std::numbers::pi * motion.time[row] / 300.0));
+    child.rotation[row] = turn * child.rotation[row];
+    for (Vec3* v : {&child.angular_velocity[row], &child.angular_acceleration[row], &child.acceleration[row]})
+      *v = turn * *v;
+  }
+  return motion;
+}
+
+TEST(JointType, OfALongRecordingIsToldBesideDriftingHeadings) {
+  constexpr std::size_t rows = 24000;
+  const DhLeaf mount{.theta = 0.7, .d = 0.2, .alpha = -1.1, .a = 0.5}, end{.theta = -1.9, .d = 0.15, .alpha = 0.3},
+      first{.alpha = 1.4, .theta_signal = 0}, second{.theta = 1.5, .alpha = -1.3, .theta_signal = 1};
+  const JointSignal large = wave(0.6, 0.2, 1.0, rows), small = wave(0.15, 0.1, 0.2, rows);
+  EXPECT_EQ(type_of(with_heading_drift(two_segments({mount, first, end}, {large}, rows))).type,
+            EstimatedJointType::revolute);
+  EXPECT_EQ(type_of(with_heading_drift(two_segments({mount, first, second, end}, {large, small}, rows))).type,
+            EstimatedJointType::universal);
 }
 
 TEST(JointType, ASphericalJointFarFromTheBaseIsNotRevolute) {

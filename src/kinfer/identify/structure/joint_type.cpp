@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/base/angle.hpp"
+#include "kinfer/geometry/rotation.hpp"
 #include "kinfer/identify/structure/slide_fit.hpp"
 #include "kinfer/identify/structure/thresholds.hpp"
 #include "kinfer/identify/structure/universal_axes.hpp"
@@ -68,11 +70,72 @@ std::array<double, 3> largest_first(const VectorXd& squares) {
   return {root(2), root(1), root(0)};
 }
 
+/// Unit vectors that a mean rotation maps onto each other best, in child and parent.
+struct MeanAxis {
+  Vec3 in_child, in_parent;
+};
+
+MeanAxis mean_axis(const std::vector<Mat3>& rotations) {
+  Mat3 sum = Mat3::Zero();
+  for (const Mat3& rotation : rotations) sum += rotation;
+  const Vec3 in_child = symmetric_eigen(sum.transpose() * sum).vectors.col(2);
+  return {in_child, (sum * in_child).normalized()};
+}
+
+/// The headings of the child relative to the parent's, as angles about the vertical at the middles of windows.
+struct HeadingDrift {
+  double begin = 0.0;         // [s]
+  std::vector<double> angle;  // [rad] of the windows, continuous
+
+  std::size_t window_of(double time) const { return static_cast<std::size_t>((time - begin) / heading_drift_window); }
+  double at(double time) const {
+    const double last = static_cast<double>(angle.size() - 1),
+                 along = std::clamp((time - begin) / heading_drift_window - 0.5, 0.0, last);
+    const auto before = static_cast<std::size_t>(along), after = std::min(before + 1, angle.size() - 1);
+    return std::lerp(angle[before], angle[after], along - static_cast<double>(before));
+  }
+};
+
+/// The drift that leaves least of the motion of one axis. A vertical axis tells nothing of it: then it is small.
+void fit_drift(HeadingDrift& drift, const MeanAxis& axis, const RecordedMotion& motion, const SegmentMotion& parent,
+               const SegmentMotion& child, const std::vector<std::size_t>& rows) {
+  std::vector<Vec2> match(drift.angle.size(), Vec2::Zero());  // cosine and sine of the angle, times a weight
+  for (const std::size_t row : rows) {
+    const Vec3 of_parent = parent.rotation[row] * axis.in_parent, of_child = child.rotation[row] * axis.in_child;
+    match[drift.window_of(motion.time[row])] +=
+        Vec2(of_child.head<2>().dot(of_parent.head<2>()) + weight_of_no_drift, of_child.cross(of_parent).z());
+  }
+  double before = 0.0;
+  for (std::size_t w = 0; w < match.size(); ++w) {
+    if (match[w].norm() > 0.0) before += wrap_to_pi(std::atan2(match[w].y(), match[w].x()) - before);
+    drift.angle[w] = before;
+  }
+}
+
+/// The relative rotations without the drift of headings. A short recording stays as it is. Of a second axis that moves
+/// within the windows enough is left.
+std::vector<Mat3> without_heading_drift(const RecordedMotion& motion, const SegmentMotion& parent,
+                                        const SegmentMotion& child, const std::vector<std::size_t>& rows,
+                                        std::vector<Mat3> rotations) {
+  if (rows.empty()) return rotations;
+  HeadingDrift drift{motion.time[rows.front()], {}};
+  drift.angle.resize(drift.window_of(motion.time[rows.back()]) + 1);
+  if (drift.angle.size() < least_drift_windows) return rotations;
+  for (int pass = 0; pass < heading_drift_passes; ++pass) {
+    fit_drift(drift, mean_axis(rotations), motion, parent, child, rows);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      rotations[i] =
+          parent.rotation[rows[i]].transpose() * rot_z(drift.at(motion.time[rows[i]])) * child.rotation[rows[i]];
+  }
+  return rotations;
+}
+
 /// [rad] The headings behind a gap of 2 s at 1 rad/s were 11 and 16° off.
 constexpr double heading_error_behind_gaps = 15.0 * degree;
 
 struct PairMotion {
   RelativeMotion relative;
+  std::vector<Mat3> rotation;  // parent_R_child without the drift of headings
   double heading_error = 0.0;  // [rad] behind gaps of either sensor
   SymmetricEigen rates;        // mean squares, least first
   RigidRates rigid;
@@ -84,7 +147,9 @@ PairMotion pair_motion(const RecordedMotion& motion, const SegmentTree& tree, st
                        const std::vector<std::size_t>& rows) {
   const std::size_t parent = *tree.parent[child];
   const PairFit& pair = tree.pair(parent, child);
-  PairMotion j{relative_motion(motion.segments[parent], motion.segments[child], rows), 0.0, {}, {}, {}, {}};
+  PairMotion j{relative_motion(motion.segments[parent], motion.segments[child], rows), {}, 0.0, {}, {}, {}, {}};
+  j.rotation =
+      without_heading_drift(motion, motion.segments[parent], motion.segments[child], rows, j.relative.rotation);
   j.rigid = rigid_rates(motion, motion.segments[parent], motion.segments[child]);
   j.rates = second_moment(rows.size(), [&](std::size_t i) { return j.relative.angular_velocity[i]; });
   j.evidence.rates = largest_first(j.rates.values);
@@ -93,26 +158,28 @@ PairMotion pair_motion(const RecordedMotion& motion, const SegmentTree& tree, st
   j.evidence.axis_in_child = second_moment(rows.size(), [&](std::size_t i) {
                                return Vec3(j.relative.rotation[i].transpose() * j.relative.angular_velocity[i]);
                              }).vectors.col(2);
-  j.two_axes = universal_axes(j.relative.rotation, j.rates.vectors);
+  j.two_axes = universal_axes(j.rotation, j.rates.vectors);
   if (!motion.segments[parent].restarts.empty() || !motion.segments[child].restarts.empty())
     j.heading_error = heading_error_behind_gaps;
   return j;
 }
 
-/// What the motion leaves to each type. To a constant orientation and to a single axis by the singular values σ of the
-/// mean rotation: mean ‖R e − mean‖² of the axes that fit best is 2 (1 − σ).
-MotionDeviations motion_deviations(const PairMotion& j) {
+/// Deviation of rotations from a constant one (0) and from those about one axis (2), by the singular values σ of their
+/// mean: mean ‖R e − mean‖² of the axes that fit best is 2 (1 − σ).
+double mean_deviation(const std::vector<Mat3>& rotations, Eigen::Index of) {
   Mat3 mean = Mat3::Zero();
-  for (const Mat3& rotation : j.relative.rotation) mean += rotation / static_cast<double>(j.relative.rotation.size());
+  for (const Mat3& rotation : rotations) mean += rotation / static_cast<double>(rotations.size());
   const VectorXd squares = symmetric_eigen(mean.transpose() * mean).values;  // σ², least first
-  const auto deviation = [&](Eigen::Index i) {
-    return std::sqrt(std::max(0.0, 2.0 * (1.0 - std::sqrt(std::max(0.0, squares[i])))));
-  };
+  return std::sqrt(std::max(0.0, 2.0 * (1.0 - std::sqrt(std::max(0.0, squares[of])))));
+}
+
+/// What the motion leaves to each type.
+MotionDeviations motion_deviations(const PairMotion& j) {
   const auto beyond_headings = [&](double d) {
     return std::sqrt(std::max(0.0, d * d - j.heading_error * j.heading_error));
   };
-  return {.rotation = deviation(0),
-          .axis = beyond_headings(deviation(2)),
+  return {.rotation = mean_deviation(j.relative.rotation, 0),
+          .axis = beyond_headings(mean_deviation(j.rotation, 2)),
           .plane = beyond_headings(j.two_axes.deviation),
           .axes_angle = j.two_axes.angle,
           .rate_share =

@@ -25,65 +25,102 @@ struct WorldNumbers {
   std::vector<double> offsets;  // [rad]
 };
 
+/// The best rotation so far. A trial that changes the heading of one part alone costs the sums of that part.
+class RotationSearch {
+ public:
+  explicit RotationSearch(const PairProblem& problem) : problem_(problem) {
+    best_.offsets.assign(problem.parts().size(), 0.0);
+    sums_ = problem.sums_of_parts(rotation());
+    least_ = problem.cost(sums_, rotation());
+  }
+
+  const WorldNumbers& best() const { return best_; }
+  WorldRotation rotation() const { return rotation_of(best_); }
+
+  /// Takes a rotation that costs less.
+  bool improves(const WorldNumbers& trial) {
+    const WorldRotation rotation = rotation_of(trial);
+    return take(trial, problem_.sums_of_parts(rotation), rotation);
+  }
+
+  /// Likewise, with another heading of one part.
+  bool improves_part(std::size_t part, double offset) {
+    WorldNumbers trial = best_;
+    trial.offsets[part] = offset;
+    const WorldRotation rotation = rotation_of(trial);
+    std::vector<PairProblem::PartSums> sums = sums_;
+    sums[part] = problem_.sums_of(part, rotation);
+    return take(trial, std::move(sums), rotation);
+  }
+
+  bool improves_by(double angle, double drift, const Vec2& tilt) {
+    return improves({best_.angle + angle, best_.drift + drift, best_.tilt + tilt, best_.offsets});
+  }
+
+  bool improves_part_by(std::size_t part, double by) { return improves_part(part, best_.offsets[part] + by); }
+
+ private:
+  WorldRotation rotation_of(const WorldNumbers& x) const {
+    return problem_.world_rotation(x.angle, x.drift, x.tilt, x.offsets);
+  }
+
+  bool take(const WorldNumbers& trial, std::vector<PairProblem::PartSums> sums, const WorldRotation& rotation) {
+    const double cost = problem_.cost(sums, rotation);
+    if (!(cost < least_)) return false;
+    best_ = trial, sums_ = std::move(sums), least_ = cost;
+    return true;
+  }
+
+  const PairProblem& problem_;
+  WorldNumbers best_;
+  std::vector<PairProblem::PartSums> sums_;  // of the best
+  double least_ = 0.0;
+};
+
 /// Coarse grid of headings, then pattern search in angle, drift and tilt with halved steps. The heading of a part
 /// behind a gap is scanned around the circle, too; that of the longest part is zero by definition.
 WorldRotation search_world_rotation(const PairProblem& problem) {
   constexpr double coarse = 2.0 * std::numbers::pi / heading_starts, min_step = 1e-4;
   const std::vector<std::size_t>& parts = problem.parts();
   const auto longest = static_cast<std::size_t>(std::ranges::max_element(parts) - parts.begin());
-  const auto rotation_of = [&](const WorldNumbers& x) {
-    return problem.world_rotation(x.angle, x.drift, x.tilt, x.offsets);
-  };
-  WorldNumbers best{.offsets = std::vector<double>(parts.size(), 0.0)};
-  double least = problem.cost(rotation_of(best));
-  const auto improves = [&](WorldNumbers trial) {
-    const double cost = problem.cost(rotation_of(trial));
-    if (!(cost < least)) return false;
-    best = std::move(trial);
-    least = cost;
-    return true;
-  };
-  const auto changed = [&](double angle, double drift, const Vec2& tilt) {
-    return WorldNumbers{best.angle + angle, best.drift + drift, best.tilt + tilt, best.offsets};
-  };
-  const auto shifted = [](WorldNumbers x, std::size_t part, double by) {
-    x.offsets[part] += by;
-    return x;
-  };
-  const auto scan_angle = [&, start = best] {
+  RotationSearch search(problem);
+  const auto scan_angle = [&, first = search.best().angle] {
     for (int k = 1; k < heading_starts; ++k) {
-      WorldNumbers trial = best;
-      trial.angle = start.angle + k * coarse;
-      improves(std::move(trial));
+      WorldNumbers trial = search.best();
+      trial.angle = first + k * coarse;
+      search.improves(trial);
     }
   };
-  const auto scan_part = [&](std::size_t part) {
-    std::vector<WorldNumbers> around;  // the best one, whichever is better meanwhile
-    for (int k = 1; k < heading_starts; ++k) around.push_back(shifted(best, part, k * coarse));
-    for (WorldNumbers& trial : around) improves(std::move(trial));
-  };
-  const auto improves_part = [&](double step) {
+  const auto for_other_parts = [&](const auto& visit) {
+    bool better = false;
     for (std::size_t part = 0; part < parts.size(); ++part)
-      if (part != longest && (improves(shifted(best, part, step)) || improves(shifted(best, part, -step)))) return true;
-    return false;
+      if (part != longest) better |= visit(part);
+    return better;
+  };
+  const auto scan_part = [&](std::size_t part) {
+    const double first = search.best().offsets[part];
+    bool better = false;
+    for (int k = 1; k < heading_starts; ++k) better |= search.improves_part(part, first + k * coarse);
+    return better;
   };
   scan_angle();
   for (int sweep = 0; sweep < part_sweeps && parts.size() > 1; ++sweep) {
-    for (std::size_t part = 0; part < parts.size(); ++part)
-      if (part != longest) scan_part(part);
+    for_other_parts(scan_part);
     scan_angle();
   }
   const Vec2 level = Vec2::Zero(), x = Vec2::UnitX(), y = Vec2::UnitY();
   for (double step = 0.5 * coarse; step > min_step;) {
     const double drift_step = 0.01 * step, tilt_step = 0.1 * step;  // [rad/s] for a log of minutes; [rad]
-    const bool better = improves(changed(step, 0.0, level)) || improves(changed(-step, 0.0, level)) ||
-                        improves(changed(0.0, drift_step, level)) || improves(changed(0.0, -drift_step, level)) ||
-                        improves(changed(0.0, 0.0, tilt_step * x)) || improves(changed(0.0, 0.0, -tilt_step * x)) ||
-                        improves(changed(0.0, 0.0, tilt_step * y)) || improves(changed(0.0, 0.0, -tilt_step * y)) ||
-                        improves_part(step);
+    const bool better = search.improves_by(step, 0.0, level) || search.improves_by(-step, 0.0, level) ||
+                        search.improves_by(0.0, drift_step, level) || search.improves_by(0.0, -drift_step, level) ||
+                        search.improves_by(0.0, 0.0, tilt_step * x) || search.improves_by(0.0, 0.0, -tilt_step * x) ||
+                        search.improves_by(0.0, 0.0, tilt_step * y) || search.improves_by(0.0, 0.0, -tilt_step * y) ||
+                        for_other_parts([&](std::size_t part) {
+                          return search.improves_part_by(part, step) || search.improves_part_by(part, -step);
+                        });
     if (!better) step *= 0.5;
   }
-  return rotation_of(best);
+  return search.rotation();
 }
 
 /// Inverse of the mean square plus the floor's, scaled to the identity if isotropic.

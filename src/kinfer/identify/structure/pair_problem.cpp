@@ -60,16 +60,17 @@ double PairProblem::magnetic_cost(const WorldRotation& world_rotation) const {
   return cost;
 }
 
-double PairProblem::cost(const WorldRotation& world_rotation) const {
-  const Normal normal = normal_equations(world_rotation);
+double PairProblem::cost(const std::vector<PartSums>& sums, const WorldRotation& world_rotation) const {
+  PartSums all;
+  for (const PartSums& part : sums) all.force += part.force, all.angular_velocity += part.angular_velocity;
+  const Normal normal = normal_equations(all.force);
   const auto x = solve_spd(normal.matrix, -normal.right);
   const double square = normal.square + (x ? x->dot(normal.right) : 0.0);
   const double noise = pair_acceleration_floor * pair_acceleration_floor;
   const double drift_ratio = world_rotation.heading.drift / heading_drift_sd;
   const double tilt_ratio_squared = world_rotation.tilt.squaredNorm() / (vertical_tilt_sd * vertical_tilt_sd);
   const double independent_samples = static_cast<double>(rows_.size()) / rows_per_independent_sample;
-  return 1.5 * std::log(std::max(0.0, square) / 3.0 + noise) +
-         code_length(mean_square_rate(world_rotation), pair_rate_floor) +
+  return 1.5 * std::log(std::max(0.0, square) / 3.0 + noise) + code_length(all.angular_velocity, pair_rate_floor) +
          0.5 * (drift_ratio * drift_ratio + magnetic_cost(world_rotation) + tilt_ratio_squared) / independent_samples;
 }
 
@@ -97,15 +98,31 @@ void PairProblem::solve(PairFit& fit, const Mat3& weight) const {
   }
 }
 
-Mat3 PairProblem::mean_square_rate(const WorldRotation& world_rotation) const {
-  Mat3 sum = Mat3::Zero();
-  for (const HeadingWindow& window : windows_) {
+PairProblem::PartSums PairProblem::sums_of(std::size_t part, const WorldRotation& world_rotation) const {
+  PartSums sums;
+  for (std::size_t w = first_window_[part]; w < first_window_[part + 1]; ++w) {
+    const HeadingWindow& window = windows_[w];
+    const Mat3 e = world_rotation.at(window.time);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) sums.force += e(i, j) * window.force[i][j];
     Eigen::Matrix<double, rate_parts, 1> factor;
-    factor << 1.0, world_rotation.at(window.time).reshaped<Eigen::RowMajor>();
+    factor << 1.0, e.reshaped<Eigen::RowMajor>();
     Eigen::Matrix<double, 3, 3 * rate_parts> half = Eigen::Matrix<double, 3, 3 * rate_parts>::Zero();
     for (int i = 0; i < rate_parts; ++i) half += factor[i] * window.angular_velocity.middleRows<3>(3 * i);
-    for (int i = 0; i < rate_parts; ++i) sum += factor[i] * half.middleCols<3>(3 * i);
+    for (int i = 0; i < rate_parts; ++i) sums.angular_velocity += factor[i] * half.middleCols<3>(3 * i);
   }
+  return sums;
+}
+
+std::vector<PairProblem::PartSums> PairProblem::sums_of_parts(const WorldRotation& world_rotation) const {
+  std::vector<PartSums> sums;
+  for (std::size_t part = 0; part < parts_.size(); ++part) sums.push_back(sums_of(part, world_rotation));
+  return sums;
+}
+
+Mat3 PairProblem::mean_square_rate(const WorldRotation& world_rotation) const {
+  Mat3 sum = Mat3::Zero();
+  for (const PartSums& part : sums_of_parts(world_rotation)) sum += part.angular_velocity;
   return sum;
 }
 
@@ -133,6 +150,7 @@ void PairProblem::make_windows() {
     if (parts_.empty() || gaps != last_gaps) {
       parts_.push_back(0);
       part_begin_.push_back(gaps > 0 ? restarts[gaps - 1] : begin_);
+      first_window_.push_back(windows_.size());
     }
     if (windows_.empty() || gaps != last_gaps || window != last_window) {
       windows_.emplace_back();
@@ -143,6 +161,7 @@ void PairProblem::make_windows() {
     last_window = window;
     add(windows_.back(), row);
   }
+  first_window_.push_back(windows_.size());
 }
 
 void PairProblem::add(HeadingWindow& window, std::size_t row) {
@@ -162,13 +181,7 @@ void PairProblem::add(HeadingWindow& window, std::size_t row) {
   window.share += 1.0 / n;
 }
 
-PairProblem::Normal PairProblem::normal_equations(const WorldRotation& world_rotation) const {
-  Mat7 mixed = Mat7::Zero();
-  for (const HeadingWindow& window : windows_) {
-    const Mat3 e = world_rotation.at(window.time);
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) mixed += e(i, j) * window.force[i][j];
-  }
+PairProblem::Normal PairProblem::normal_equations(const Mat7& mixed) const {
   Normal normal{MatrixXd(12, 12), VectorXd(12)};
   normal.matrix << of_first_.topLeftCorner<6, 6>(), -mixed.topLeftCorner<6, 6>(),
       -mixed.topLeftCorner<6, 6>().transpose(), of_second_.topLeftCorner<6, 6>();

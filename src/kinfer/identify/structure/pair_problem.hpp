@@ -75,8 +75,17 @@ class PairProblem {
   /// Parts of the rows between the gaps of the two sensors, within which no heading restarts: the number of their rows.
   const std::vector<std::size_t>& parts() const { return parts_; }
 
-  /// Code length per row [nats] plus the prior of E; the residual's covariance is taken as isotropic.
-  double cost(const WorldRotation& world_rotation) const;
+  /// What the windows of a part contribute to the cost at some E.
+  struct PartSums {
+    Mat7 force = Mat7::Zero();             ///< Σ uᵀ E v
+    Mat3 angular_velocity = Mat3::Zero();  ///< as mean_square_rate
+  };
+  PartSums sums_of(std::size_t part, const WorldRotation& world_rotation) const;
+  std::vector<PartSums> sums_of_parts(const WorldRotation& world_rotation) const;
+
+  /// Code length per row [nats] plus the prior of E; the residual's covariance is taken as isotropic. `sums`: those at
+  /// that E.
+  double cost(const std::vector<PartSums>& sums, const WorldRotation& world_rotation) const;
 
   /// Lever arms, biases and residual at the fit's E, the residual weighted by `weight` (in the first sensor).
   void solve(PairFit& fit, const Mat3& weight) const;
@@ -96,7 +105,7 @@ class PairProblem {
   void make_windows();
   void add(HeadingWindow& window, std::size_t row);
   double magnetic_cost(const WorldRotation& world_rotation) const;
-  Normal normal_equations(const WorldRotation& world_rotation) const;
+  Normal normal_equations(const Mat7& mixed) const;
   Eigen::Matrix<double, 3, 13> difference_jacobian(const WorldRotation& world_rotation, std::size_t row) const;
 
   const RecordedMotion& motion_;
@@ -107,7 +116,8 @@ class PairProblem {
   Mat7 of_first_ = Mat7::Zero(), of_second_ = Mat7::Zero();
   std::vector<HeadingWindow> windows_;
   std::vector<std::size_t> parts_;
-  std::vector<double> part_begin_;  // [s]
+  std::vector<std::size_t> first_window_;  // of each part, and the number of windows
+  std::vector<double> part_begin_;         // [s]
 };
 
 }  // namespace kinfer::identify

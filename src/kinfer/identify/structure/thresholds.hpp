@@ -33,6 +33,14 @@ KINFER_THRESHOLD(identify, relative_rate_noise, 3e-3);
 /// Joints of a machine before anything is measured: rigid, prismatic, revolute, universal, spherical.
 inline constexpr double type_prior[] = {0.06, 0.05, 0.76, 0.03, 0.1};
 
+/// [s] Headings drift little within that, at 1e-4 to 2e-3 rad/s. Shorter hides more of a slow second axis.
+inline constexpr double heading_drift_window = 30.0;
+/// Fewer are a short recording, which the figures of `orientation_error` are of.
+inline constexpr std::size_t least_drift_windows = 4;
+/// [1] a row, beside the squared sine of the axis' angle to the vertical: half of the drift at 0.6°.
+inline constexpr double weight_of_no_drift = 1e-4;
+inline constexpr int heading_drift_passes = 3;  ///< of axis and headings; the third changes nothing that counts
+
 /// [rad] Deviation of a revolute joint's axis by errors, typical of a recording: 0.01 to 0.1° with rigid mounts and
 /// industrial sensors, 0.3 to 1° with consumer ones, 0.03 to 0.8° on the iiwa and the pendulum, 1 to 3° on DIODEM and
 /// on foam. Larger calls machines of spherical joints revolute; smaller calls soft mounts spherical joints.
