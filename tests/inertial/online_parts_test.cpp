@@ -197,6 +197,28 @@ TEST(Smoother, FindsTheBiasAndTheScaleOfTheGyro) {
   EXPECT_NEAR(found.scale.trace() / 3, 0.003, 0.0015) << "a prior of 0.002 pulls it towards zero";
 }
 
+/// A level carriage that turns about the vertical from the first row on, for 0.7 s at 0.042 rad/s, and rests from 28 s
+/// on.
+TEST(Smoother, AMomentOfSlowRotationIsNoBias) {
+  constexpr double period = 0.01, bias = 0.004;
+  std::vector<double> time, heading{0.0};
+  InsSensor sensor{.name = "carriage", .acceleration = {}, .angular_velocity = {}, .field = {}, .faults = {}};
+  for (int k = 0; k < 3000; ++k) {
+    const double t = period * k;
+    const double rate = t > 28.0 ? 0.0 : t > 6.0 && t < 6.7 ? 0.042 : 0.3 * std::sin(0.8 * t + 0.5);
+    time.push_back(t);
+    if (k > 0) heading.push_back(heading.back() + rate * period);
+    for (int i = 0; i < 3; ++i) {
+      sensor.angular_velocity.axis[i].push_back(static_cast<float>(i == 2 ? rate + bias : 0.0));
+      sensor.acceleration.axis[i].push_back(static_cast<float>(i == 2 ? standard_gravity : 0.0));
+    }
+  }
+  sensor.faults.assign(time.size(), 0);
+  const FilterOutput found = smooth_orientation(sensor, time);
+  const Quat turned = found.world_q_sensor.front().conjugate() * found.world_q_sensor.back();
+  EXPECT_LT(std::abs(wrap_to_pi(quat_log(turned).z() - heading.back())), 1.0 * degree);
+}
+
 TEST(PaperFilter, StartsWithTheFirstUsableSampleAndACopyGoesOnAlone) {
   const CarriedSensor c = carried({.seconds = 10.0});
   PaperEkf filter;

@@ -62,6 +62,7 @@ KinferFilter::KinferFilter(const KinferFilterOptions& options) : options_(option
   variance.segment<2>(velocity_state).setConstant(square(options.speed));
   variance.segment<3>(bias_state).setConstant(square(options.bias_sd));
   covariance_.diagonal() = variance;
+  estimate_.bias = options.bias;
 }
 
 void KinferFilter::start(const InsSample& sample) {
@@ -225,12 +226,14 @@ void KinferFilter::correct_bias(KinferErrorState& sum) {
   for (int i = 0; i < 3; ++i) update_state(bias_state + i, previous_mean_rate_[i] - estimate_.bias[i], variance, sum);
 }
 
-/// A slow steady rotation looks like rest, but its rate differs from the estimated bias.
+/// A slow steady rotation looks like rest, but its rate differs from the estimated bias. For a moment any motion does:
+/// then the rate has to be a usual bias.
 bool KinferFilter::rest_agrees_with_bias() const {
   if (rest_.still > options_.max_rest_rejection) return true;
   const Vec3 sd = covariance_.diagonal().segment<3>(bias_state).cwiseSqrt();
   const Vec3 distance = rest_.slow_rate.value - estimate_.bias;
-  return ((distance.cwiseAbs() - 5.0 * sd).array() < options_.bias_gate).all();
+  const double gate = rest_.still < min_rest_duration ? options_.moment_gate : options_.rest_gate;
+  return ((distance.cwiseAbs() - gate * sd).array() < options_.bias_gate).all();
 }
 
 void KinferFilter::correct_heading(KinferErrorState& sum) {

@@ -34,7 +34,8 @@ struct KinferFilterOptions {
 
   double gyro_noise = 5e-4;      ///< [rad/√s] angle random walk; larger trusts specific force more
   double rotation_noise = 1e-3;  ///< [rad/√rad] error per rotation angle not explained by bias or scale
-  double bias_sd = 8.7e-3;       ///< [rad/s] (0.5 °/s) initial bias
+  Vec3 bias = Vec3::Zero();      ///< [rad/s] initial
+  double bias_sd = 8.7e-3;       ///< [rad/s] (0.5 °/s) of that
   double bias_drift = 1.7e-5;    ///< [rad/s/√s] bias random walk; larger forgets a bias faster
   double scale_sd = 2e-3;        ///< gyro scale and cross-axis errors, assumed constant; 0: not estimated
   double rest_noise = 3e-4;      ///< [rad/√s] noise of the rate at rest as a measurement of the bias
@@ -52,7 +53,9 @@ struct KinferFilterOptions {
   double max_hold = 0.1;               ///< [s] longest gap in the rates that is bridged by the neighbouring samples
   double outage_rotation_noise = 0.3;  ///< [rad/√s] angle random walk while the rate is unknown (missing or clipped)
   double outage_acceleration = 3.0;    ///< [m/s²·√s] velocity random walk while the specific force is unknown
-  double bias_gate = 5e-3;             ///< [rad/s] (0.3 °/s) beyond 5 sd: rates farther from the bias are not rest
+  double bias_gate = 5e-3;             ///< [rad/s] (0.3 °/s) beyond these sd: rates farther from the bias are not rest
+  double rest_gate = 5.0;              ///< [sd] of the bias
+  double moment_gate = 2.0;            ///< [sd] likewise, of stillness shorter than `min_rest_duration`
   double max_rest_rejection = 10.0;    ///< [s] after which such a rest is accepted nevertheless
   RestOptions rest{};
   MagneticOptions magnetic{};

@@ -9,6 +9,7 @@ namespace kinfer {
 namespace {
 
 constexpr int states = kinfer_states, gyro_error_size = 12, first_gyro_error = 5;
+constexpr double bias_sd_by_rest = 2e-3;  // [rad/s] what a consumer gyroscope drifts by within minutes
 constexpr int packed_size = states * (states + 1) / 2;
 
 /// One update period of the forward pass.
@@ -120,12 +121,24 @@ std::vector<Checkpoint> forward_checkpoints(const InsSensor& sensor, std::span<c
   return all;
 }
 
+/// A recording that begins in motion begins with the bias of its longest rest: any moment of a slow rotation would pass
+/// for a rest meanwhile.
+KinferFilterOptions started_by_rest(KinferFilterOptions options, const InsSensor& sensor,
+                                    std::span<const double> time) {
+  const std::vector<RestPeriod> rests = rest_periods(sensor, time);
+  if (rests.empty() || rests.front().begin < time.front() + options.rest.mean_time) return options;
+  options.bias = std::ranges::max_element(rests, {}, &RestPeriod::seconds)->angular_velocity;
+  options.bias_sd = bias_sd_by_rest;
+  return options;
+}
+
 }  // namespace
 
 FilterOutput smooth_orientation(const InsSensor& sensor, std::span<const double> time,
                                 const KinferOfflineOptions& options) {
   FilterOutput motion;
-  const std::vector<Checkpoint> from = forward_checkpoints(sensor, time, options.filter, motion);
+  const std::vector<Checkpoint> from =
+      forward_checkpoints(sensor, time, started_by_rest(options.filter, sensor, time), motion);
   motion.world_q_sensor.assign(time.size(), Quat::Identity());
   motion.bias.resize(motion.bias_time.size());
   const SmootherStep& open = from.back().step;  // incomplete period: its rows are relative to its start
