@@ -67,14 +67,13 @@ struct LevenbergMarquardt {
 
   /// One accepted step; false at a minimum or if no damping decreases the cost.
   bool step(bool hold_global_parameters) {
-    bool is_at_edge = false;  // of what the linearisation holds for: less damping would be refused again
-    for (; damping < most_damping; damping *= 10.0, is_at_edge = true) {
+    for (; damping < most_damping; damping *= 10.0) {
       const auto first = direction(fit.unknowns, hold_global_parameters);
       if (!first) continue;
       Point trial = evaluate_step(fit.unknowns, *first);
       if (trial.cost.total < fit.cost.total) {
         accept(std::move(trial));
-        if (!is_at_edge) damping = std::max(least_damping, 0.03 * damping);
+        damping = std::max(least_damping, 0.03 * damping);
         return true;
       }
       const double rise = trial.cost.total - fit.cost.total,
