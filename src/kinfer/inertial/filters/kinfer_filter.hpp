@@ -55,7 +55,8 @@ struct KinferFilterOptions {
   double outage_acceleration = 3.0;    ///< [m/s²·√s] velocity random walk while the specific force is unknown
   double bias_gate = 5e-3;             ///< [rad/s] (0.3 °/s) beyond these sd: rates farther from the bias are not rest
   double rest_gate = 5.0;              ///< [sd] of the bias
-  double moment_gate = 2.0;            ///< [sd] likewise, of stillness shorter than `min_rest_duration`
+  double moment_gate = 2.0;            ///< [sd] likewise, of stillness shorter than `min_rest_duration`; larger takes
+                                       ///< slow rotations for rests. Set on simulated drives that begin in motion
   double max_rest_rejection = 10.0;    ///< [s] after which such a rest is accepted nevertheless
   RestOptions rest{};
   MagneticOptions magnetic{};
