@@ -6,6 +6,7 @@
 #include "kinfer/base/expect.hpp"
 #include "kinfer/kinematics/batch/batch_points.hpp"
 #include "kinfer/kinematics/batch/batch_population.hpp"
+#include "kinfer/kinematics/batch/batch_poses.hpp"
 #include "paper2_case.hpp"
 #include "peers/ceres_jets.hpp"
 #include "peers/fma_peak.hpp"
@@ -80,6 +81,40 @@ void normal_equations(benchmark::State& state, const batch::Kernels& kernels) {
   count_poses(state, poses);
 }
 
+/// The arm with a mass on each link, compliant joints and a series of 40 harmonics each.
+Chain yielding_arm() {
+  Chain chain = paper2_case().nominal;
+  for (std::size_t j = 0; j < chain.joints.size(); ++j) {
+    chain.masses.push_back({static_cast<int>(j), Vec3(0.1, 0.0, 0.05), 10.0});
+    chain.joints[j].compliance = 1e-6;
+    for (int order = 0; order < 40; ++order) chain.joints[j].harmonics.push_back({1.0 * order, 1e-5, 2e-5});
+  }
+  return chain;
+}
+
+void yielding_poses(benchmark::State& state, const batch::Kernels& kernels) {
+  const Paper2Case& c = paper2_case();
+  const BatchPoses batch(yielding_arm(), c.set, kernels);
+  std::vector<Pose> at(poses);
+  std::vector<Twists> twists(poses);
+  std::vector<PoseRow> rows;
+  for (int i = 0; i < poses; ++i) rows.push_back({c.table.joints.col(i).data(), {}, &at[i], &twists[i]});
+  BatchPoses::Scratch scratch;
+  for (auto _ : state) batch.evaluate(rows, scratch);
+  count_poses(state, poses);
+}
+
+void yielding_poses_one_by_one(benchmark::State& state) {
+  const Paper2Case& c = paper2_case();
+  const PoseEvaluator evaluator(yielding_arm(), c.set);
+  Twists twists;
+  for (auto _ : state)
+    for (int i = 0; i < poses; ++i)
+      benchmark::DoNotOptimize(evaluator.pose_and_derivative(c.table.joints.col(i), {}, twists));
+  count_poses(state, poses);
+}
+BENCHMARK(yielding_poses_one_by_one);
+
 void kdl_position(benchmark::State& state) {
   const Paper2Case& c = paper2_case();
   KdlChain chain(c.start.data());
@@ -130,6 +165,7 @@ void fma_peak(benchmark::State& state, void (*run)(int), int lanes) {
     add("errors", errors_of_one_candidate);
     add("jacobian", residuals_and_jacobian);
     add("normal_equations", normal_equations);
+    add("yielding_poses", yielding_poses);
     if (kernels.lanes == 4) benchmark::RegisterBenchmark("fma_peak/AVX2 + FMA", fma_peak, multiply_adds_avx2, 4);
     if (kernels.lanes == 8) benchmark::RegisterBenchmark("fma_peak/AVX-512", fma_peak, multiply_adds_avx512, 8);
   }

@@ -129,6 +129,8 @@ void print(const std::map<std::string, Measured>& medians) {
                 required ? 80 : 0);
     table.items("residual + 24 columns, " + k, "jacobian/" + k, "ceres_jets", "Ceres Jets", required ? 18 : 0);
     table.items("residual + normal equations, " + k, "normal_equations/" + k, "ceres_jets", "Ceres Jets", 0);
+    table.items("any chain, pose + 24 columns, " + k, "yielding_poses/" + k, "yielding_poses_one_by_one", "one by one",
+                0);
     table.share_of_bound(k, 0.65);
   }
   table.times("cold fit of paper 2's case", "cold_fit", "ceres_cold_fit", "Ceres autodiff", 15);

@@ -10,15 +10,11 @@
 #include "kinfer/kinematics/batch/tool_derivatives.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "laws/example_chains.hpp"
+#include "support/kernels.hpp"
 #include "support/differences.hpp"
 
 namespace kinfer {
 namespace {
-
-std::vector<const batch::Kernels*> all_kernels() {
-  const batch::KernelList list = batch::runnable_kernels();
-  return {list.kernels, list.kernels + list.count};
-}
 
 /// All numbers but compliances: of chains that do not yield this has a batch form.
 ParameterSet without_compliances(const Chain& chain) {
@@ -28,7 +24,7 @@ ParameterSet without_compliances(const Chain& chain) {
 }
 
 TEST(Kernels, TheBestIsTheLastOfThoseThatRunAndThePortableIsFirst) {
-  const auto kernels = all_kernels();
+  const auto kernels = test::kernels_to_run();
   ASSERT_FALSE(kernels.empty());
   EXPECT_EQ(kernels.front()->name, batch::portable_kernels.name);
   EXPECT_EQ(&batch::best_kernels(), kernels.back());
@@ -41,7 +37,7 @@ TEST(Kernels, SinesAreRightToAFewUlpsForAnglesOfAnySize) {
   Rng rng(3);
   for (const double size : {0.1, 3.0, 100.0, 9e4, 1e8})
     for (int k = 0; k < 41; ++k) angles.push_back(rng.uniform(-size, size));  // not a multiple of any number of lanes
-  for (const batch::Kernels* kernels : all_kernels()) {
+  for (const batch::Kernels* kernels : test::kernels_to_run()) {
     std::vector<double> c(angles.size()), s(angles.size());
     kernels->sines(angles.data(), static_cast<int>(angles.size()), c.data(), s.data());
     for (std::size_t k = 0; k < angles.size(); ++k) {
@@ -144,7 +140,7 @@ TEST(BatchPoints, NumbersInTheKernelsLayoutHaveTheSameSquares) {
                    {}};
   const Eigen::Matrix3Xd inverse_sd = Eigen::Matrix3Xd::NullaryExpr(3, count, [&] { return rng.uniform(1, 3); });
   const VectorXd x = pack(set, chain);
-  for (const batch::Kernels* kernels : all_kernels()) {
+  for (const batch::Kernels* kernels : test::kernels_to_run()) {
     const BatchPoints points(chain, set, table, *kernels);
     EXPECT_EQ(points.points(), count);
     EXPECT_EQ(points.unknowns(), set.free_count());

@@ -9,6 +9,7 @@
 #include "kinfer/kinematics/forward.hpp"
 #include "kinfer/linalg/products.hpp"
 #include "laws/example_chains.hpp"
+#include "support/kernels.hpp"
 
 namespace kinfer {
 namespace {
@@ -47,17 +48,12 @@ struct BatchCase {
 const std::vector<std::string> some_numbers{"base_x", "base_rz", "a2",    "alpha3", "theta4",
                                             "beta2",  "d5",      "gain6", "tool_y"};
 
-std::vector<const batch::Kernels*> kernels_to_run() {
-  const batch::KernelList list = batch::runnable_kernels();
-  return {list.kernels, list.kernels + list.count};
-}
-
 TEST(BatchSizes, AnyNumberOfPointsGivesTheCostOfTheWalk) {
   for (const int points : {1, 2, 3, 7, 8, 9, 15, 16, 17, 63, 64, 65, 130}) {
     const BatchCase c(points, some_numbers);
     const VectorXd x = c.candidate(3);
     const double slow = c.slow_sum_at(x);
-    for (const batch::Kernels* kernels : kernels_to_run()) {
+    for (const batch::Kernels* kernels : test::kernels_to_run()) {
       const BatchPoints batch(c.chain, c.set, c.table, *kernels);
       const auto weights = batch.weights(Eigen::Matrix3Xd::Ones(3, points));
       BatchPoints::Scratch scratch;
@@ -78,7 +74,7 @@ TEST(BatchSizes, AnyNumberOfCandidatesGivesTheirOwnSums) {
   for (const int candidates : {1, 2, 7, 8, 9, 16, 31, 33}) {
     MatrixXd x(c.set.free_count(), candidates);
     for (int k = 0; k < candidates; ++k) x.col(k) = c.candidate(static_cast<std::uint64_t>(100 + k));
-    for (const batch::Kernels* kernels : kernels_to_run()) {
+    for (const batch::Kernels* kernels : test::kernels_to_run()) {
       std::vector<double> sums(static_cast<std::size_t>(candidates));
       BatchPopulation<double>(c.chain, c.set, c.table, *kernels).sums(x, sums);
       for (int k = 0; k < candidates; ++k) {
@@ -92,7 +88,7 @@ TEST(BatchSizes, AnyNumberOfCandidatesGivesTheirOwnSums) {
 TEST(BatchSizes, NothingFreeIsTheNominalChain) {
   const BatchCase c(9, {});
   const double slow = c.slow_sum_at(VectorXd());
-  for (const batch::Kernels* kernels : kernels_to_run()) {
+  for (const batch::Kernels* kernels : test::kernels_to_run()) {
     std::vector<double> sum(1);
     BatchPopulation<double>(c.chain, c.set, c.table, *kernels).sums(MatrixXd(0, 1), sum);
     EXPECT_NEAR(sum[0], slow, 1e-12 * slow) << kernels->name;
@@ -104,7 +100,7 @@ TEST(BatchSizes, ACandidateThatIsNoNumberSpoilsItsOwnSumOnly) {
   MatrixXd x(c.set.free_count(), 9);
   for (int k = 0; k < 9; ++k) x.col(k) = c.candidate(static_cast<std::uint64_t>(k));
   x(2, 4) = std::nan("");
-  for (const batch::Kernels* kernels : kernels_to_run()) {
+  for (const batch::Kernels* kernels : test::kernels_to_run()) {
     std::vector<double> sums(9);
     BatchPopulation<double>(c.chain, c.set, c.table, *kernels).sums(x, sums);
     for (int k = 0; k < 9; ++k) EXPECT_EQ(std::isfinite(sums[static_cast<std::size_t>(k)]), k != 4) << kernels->name;

@@ -8,6 +8,7 @@
 #include "kinfer/kinematics/forward.hpp"
 #include "kinfer/linalg/products.hpp"
 #include "laws/example_chains.hpp"
+#include "support/kernels.hpp"
 
 namespace kinfer {
 namespace {
@@ -78,11 +79,6 @@ double slow_sum(const Chain& chain, const PointTable& table) {
   return sum;
 }
 
-std::vector<const batch::Kernels*> runnable() {
-  const batch::KernelList list = batch::runnable_kernels();
-  return {list.kernels, list.kernels + list.count};
-}
-
 class AnyRigidChain : public ::testing::TestWithParam<Chain> {};
 INSTANTIATE_TEST_SUITE_P(Batch, AnyRigidChain, ::testing::ValuesIn(rigid_examples()));
 
@@ -91,7 +87,7 @@ TEST_P(AnyRigidChain, SumsOfPopulationsAreThoseOfSinglePoses) {
   const PointTable table = random_points(chain, Rng(1));
   for (const ParameterSet& set : {everything(chain), links_only(chain), frames_only(chain)}) {
     const MatrixXd x = candidates(chain, set, 19, Rng(2));
-    for (const batch::Kernels* kernels : runnable()) {
+    for (const batch::Kernels* kernels : test::kernels_to_run()) {
       std::vector<double> sum(x.cols()), rough(x.cols());
       BatchPopulation<double>(chain, set, table, *kernels).sums(x, sum);
       BatchPopulation<float>(chain, set, table, *kernels).sums(x, rough);
@@ -110,7 +106,7 @@ TEST_P(AnyRigidChain, ErrorsOfPointsAreThoseOfSinglePoses) {
   const ParameterSet set = everything(chain);
   const VectorXd x = candidates(chain, set, 1, Rng(2)).col(0);
   const Chain candidate = unpack(set, chain, x);
-  for (const batch::Kernels* kernels : runnable()) {
+  for (const batch::Kernels* kernels : test::kernels_to_run()) {
     const BatchPoints points(chain, set, table, *kernels);
     Eigen::Matrix3Xd error;
     BatchPoints::Scratch scratch;
@@ -145,7 +141,7 @@ TEST_P(AnyRigidChain, JacobianAndNormalEquationsAreThoseOfSinglePoses) {
     VectorXd slow_r, r, gradient;
     MatrixXd slow_jacobian, jacobian, matrix;
     slow_residuals(unpack(set, chain, x), set, table, inverse_sd, slow_r, slow_jacobian);
-    for (const batch::Kernels* kernels : runnable()) {
+    for (const batch::Kernels* kernels : test::kernels_to_run()) {
       const BatchPoints points(chain, set, table, *kernels);
       const BatchPoints::Weights weights = points.weights(inverse_sd);
       BatchPoints::Scratch scratch;
@@ -182,7 +178,7 @@ TEST(Batch, AnglesOfManyTurnsAreHandled) {
     MatrixXd x = candidates(chain, set, 3, Rng(2));
     for (Eigen::Index k = 0; k < x.rows(); ++k)
       if (field_of(set.free()[k]->at) == Field::alpha) x.row(k).array() += 2.0 * 3.14159265358979323846 * turns;
-    for (const batch::Kernels* kernels : runnable()) {
+    for (const batch::Kernels* kernels : test::kernels_to_run()) {
       std::vector<double> sum(3);
       BatchPopulation<double>(chain, set, table, *kernels).sums(x, sum);
       for (int i = 0; i < 3; ++i) {

@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "kinfer/base/parallel.hpp"
 #include "kinfer/calibrate/conclusion/thresholds.hpp"
 #include "kinfer/estimate/poses/bundle.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
@@ -63,12 +62,10 @@ std::vector<WorkspacePoint> sample_workspace(const MatrixXd& joints, const Estim
   for (int k = 0; k < thresholds::workspace_points; ++k)
     samples.joints.col(k) = lowest + range.cwiseProduct(low_discrepancy_point(k, joints.rows()));
   const std::vector<double> errors = expected_errors(estimate, prediction, samples, threads);
-  const PoseEvaluator evaluator(estimate.chain, {});
-  std::vector<WorkspacePoint> points(thresholds::workspace_points);
-  parallel_for(points.size(), threads, [&](std::size_t i) {
-    const auto at = samples.joints.col(static_cast<Eigen::Index>(i));
-    points[i] = {evaluator.pose(at).position, errors[i], at};
-  });
+  const std::vector<Pose> poses = evaluate_poses(estimate.chain, {}, samples, Derivative::no, threads).pose;
+  std::vector<WorkspacePoint> points;
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    points.push_back({poses[i].position, errors[i], samples.joints.col(static_cast<Eigen::Index>(i))});
   return points;
 }
 

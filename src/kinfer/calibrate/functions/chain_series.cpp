@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "kinfer/base/expect.hpp"
-#include "kinfer/kinematics/poses/harmonic_sum.hpp"
+#include "kinfer/calibrate/functions/harmonic_sum.hpp"
 
 namespace kinfer::calibrate {
 

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <utility>
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/estimate/poses/point_fit.hpp"
+#include "kinfer/kinematics/batch/batch_poses.hpp"
 
 namespace kinfer {
 namespace {
@@ -142,12 +144,11 @@ MeasuredRows rows_of(const Chain& nominal, const ParameterSet& set, const PoseSe
 }
 
 /// On up to `threads` threads, a block of rows at a time.
-template <class Rows, class Body>
-void for_each_row(const Rows& rows, int threads, Body body) {
-  constexpr std::size_t block = 128;
-  parallel_for((rows.size() + block - 1) / block, threads, [&](std::size_t b) {
-    for (std::size_t k = block * b; k < std::min(rows.size(), block * (b + 1)); ++k) body(Eigen::Index{rows[k]});
-  });
+template <class Body>
+void for_each_block(std::span<const Eigen::Index> rows, int threads, Body body) {
+  constexpr std::size_t size = 128;
+  parallel_for((rows.size() + size - 1) / size, threads,
+               [&](std::size_t b) { body(rows.subspan(size * b, std::min(size, rows.size() - size * b))); });
 }
 
 }  // namespace
@@ -179,13 +180,19 @@ void evaluate_poses(const Chain& chain, const ParameterSet& set, const PoseSet& 
   at.pose.resize(data.rows());
   if (derivative == Derivative::yes) at.twists.resize(data.rows());
   for_each_mounting(chain, data, [&](int mounting, const auto& rows) {
-    const PoseEvaluator evaluator(with_mounting(chain, mounting), parameters_of_mounting(set, chain, mounting));
-    for_each_row(rows, threads, [&](Eigen::Index row) {
-      const auto q = data.joints.col(row);
-      Load load = load_at(chain, data, row);
-      if (gravity.size() > 0) load.gravity = {gravity.col(row).data(), static_cast<std::size_t>(gravity.rows())};
-      at.pose[row] = derivative == Derivative::yes ? evaluator.pose_and_derivative(q, load, at.twists[row])
-                                                   : evaluator.pose(q, load);
+    const BatchPoses batch(with_mounting(chain, mounting), parameters_of_mounting(set, chain, mounting));
+    for_each_block(rows, threads, [&](std::span<const Eigen::Index> block) {
+      thread_local std::vector<PoseRow> inputs;  // kept between calls: runs at every step of every fit
+      thread_local BatchPoses::Scratch scratch;
+      inputs.clear();
+      for (const Eigen::Index row : block) {
+        PoseRow& input = inputs.emplace_back(PoseRow{data.joints.col(row).data(), load_at(chain, data, row)});
+        if (gravity.size() > 0)
+          input.load.gravity = {gravity.col(row).data(), static_cast<std::size_t>(gravity.rows())};
+        input.pose = &at.pose[row];
+        if (derivative == Derivative::yes) input.twists = &at.twists[row];
+      }
+      batch.evaluate(inputs, scratch);
     });
   });
 }
@@ -196,8 +203,9 @@ MatrixXd gravity_torques_of_rows(const Chain& chain, const PoseSet& data, int th
   MatrixXd torques(static_cast<Eigen::Index>(chain.joints.size()), data.rows());
   for_each_mounting(chain, data, [&](int mounting, const auto& rows) {
     const Chain here = with_mounting(chain, mounting);
-    for_each_row(rows, threads, [&](Eigen::Index row) {
-      torques.col(row) = gravity_torques(here, data.joints.col(row), load_at(chain, data, row));
+    for_each_block(rows, threads, [&](std::span<const Eigen::Index> block) {
+      for (const Eigen::Index row : block)
+        torques.col(row) = gravity_torques(here, data.joints.col(row), load_at(chain, data, row));
     });
   });
   return torques;

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "kinfer/kinematics/batch/pose_job.hpp"
 #include "kinfer/linalg/kernels/gram_jobs.hpp"
 
 namespace kinfer::batch {
@@ -177,6 +178,7 @@ struct Kernels {
   void (*sines)(const double* angles, int count, double* cosines, double* sines) = nullptr;
   void (*errors)(const PointsJob&) = nullptr;
   double (*jacobian)(const JacobianJob&) = nullptr;  ///< returns the sum of the squared residuals
+  void (*poses)(const PoseJob&) = nullptr;
 };
 
 extern const Kernels portable_kernels;

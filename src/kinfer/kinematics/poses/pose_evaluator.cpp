@@ -6,7 +6,6 @@
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/kinematics/forward.hpp"
-#include "kinfer/kinematics/poses/harmonic_sum.hpp"
 #include "kinfer/kinematics/poses/pose_program.hpp"
 
 namespace kinfer {
@@ -25,8 +24,7 @@ struct JointMotionModel {
   double compliance = 0.0;
   int coupling_begin = 0, coupling_end = 0;
   bool deviates = false;
-  HarmonicSum sum;     // of the first harmonics, where they are many
-  int wave_begin = 0;  // of the others
+  int wave_begin = 0;  // of its harmonics
 };
 
 /// Sine and cosine of a harmonic at a joint position.
@@ -83,7 +81,7 @@ struct JointInputs {
   const double* q = nullptr;
   const double* torque = nullptr;  // of gravity, one per joint; null: none
   const Load* load = nullptr;
-  const Wave* waves = nullptr;  // of all harmonics but those that are summed, in the order of the joints
+  const Wave* waves = nullptr;  // of all harmonics, in the order of the joints
 };
 
 }  // namespace
@@ -115,8 +113,8 @@ struct PoseEvaluator::Program {
       for (const Coupling& c : joint.couplings) couplings.push_back({q_index[c.joint], c.factor});
       motion_models.push_back({joint.gain, q_index[j], joint.compliance, begin, static_cast<int>(couplings.size()),
                                joint.torque_compliance != 0.0 || joint.backlash != 0.0 || !joint.harmonics.empty(),
-                               HarmonicSum(joint.harmonics), wave_count});
-      wave_count += static_cast<int>(joint.harmonics.size() - motion_models.back().sum.length());
+                               wave_count});
+      wave_count += static_cast<int>(joint.harmonics.size());
       pose_needs_torque |= joint.compliance != 0.0;
     }
     pose_only = program::compile(chain, {});
@@ -157,11 +155,9 @@ struct PoseEvaluator::Program {
     if (q_index < 0) return 0.0;
     double sum = of.torque_compliance * value_or_zero(inputs.load->torques, q_index) +
                  of.backlash * value_or_zero(inputs.load->approach, q_index);
-    const std::size_t summed = motion_models[joint].sum.length();
-    if (summed > 0) sum += motion_models[joint].sum.at(inputs.q[q_index]);
     const Wave* wave = inputs.waves + motion_models[joint].wave_begin;
-    for (std::size_t k = summed; k < of.harmonics.size(); ++k) {
-      sum += of.harmonics[k].sine * wave->sine + of.harmonics[k].cosine * wave->cosine;
+    for (const Harmonic& harmonic : of.harmonics) {
+      sum += harmonic.sine * wave->sine + harmonic.cosine * wave->cosine;
       ++wave;
     }
     return sum;
@@ -174,18 +170,14 @@ struct PoseEvaluator::Program {
     waves.clear();
     for (std::size_t j = 0; j < motion_models.size(); ++j) {
       const JointMotionModel& model = motion_models[j];
-      const std::vector<Harmonic>& harmonics = chain.joints[j].harmonics;
-      for (std::size_t k = model.sum.length(); k < harmonics.size(); ++k)
-        waves.push_back(model.q_index >= 0 ? wave_at(harmonics[k].order * q[model.q_index]) : Wave{});
+      for (const Harmonic& harmonic : chain.joints[j].harmonics)
+        waves.push_back(model.q_index >= 0 ? wave_at(harmonic.order * q[model.q_index]) : Wave{});
     }
     return waves.data();
   }
 
-  Wave wave(const Step& step, const JointInputs& inputs) const {
-    const JointMotionModel& model = motion_models[step.source];
-    const int summed = static_cast<int>(model.sum.length());
-    if (step.term >= summed) return inputs.waves[model.wave_begin + step.term - summed];
-    return wave_at(chain.joints[step.source].harmonics[step.term].order * inputs.q[model.q_index]);
+  const Wave& wave(const Step& step, const JointInputs& inputs) const {
+    return inputs.waves[motion_models[step.source].wave_begin + step.term];
   }
 
   double displacement(int joint, const JointInputs& inputs) const {

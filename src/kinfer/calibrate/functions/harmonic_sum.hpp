@@ -10,7 +10,7 @@
 
 #include "kinfer/kinematics/chain.hpp"
 
-namespace kinfer {
+namespace kinfer::calibrate {
 
 class HarmonicSum {
  public:
@@ -60,4 +60,4 @@ class HarmonicSum {
   std::vector<Lane> sine_, cosine_;
 };
 
-}  // namespace kinfer
+}  // namespace kinfer::calibrate
