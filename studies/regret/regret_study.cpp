@@ -18,9 +18,9 @@
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/measurement/split.hpp"
 #include "kinfer/words/calibration/model.hpp"
-#include "studies/regret/data_sets.hpp"
 #include "studies/studies.hpp"
 #include "studies/support/arguments.hpp"
+#include "studies/support/data_sets.hpp"
 
 namespace kinfer::study::regret_study {
 using namespace calibrate;

@@ -10,8 +10,8 @@
 #include "kinfer/kinematics/batch/tool_derivatives.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "laws/example_chains.hpp"
-#include "support/kernels.hpp"
 #include "support/differences.hpp"
+#include "support/kernels.hpp"
 
 namespace kinfer {
 namespace {

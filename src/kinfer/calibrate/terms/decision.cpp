@@ -47,11 +47,19 @@ double expected(double inside, double outside) {
   return (1.0 - thresholds::part_beyond) * inside + thresholds::part_beyond * outside;
 }
 
+/// The mean reduction over its standard error, of poses among the fitted ones and beyond them as expected.
+double t_of_expected(const ErrorChange& inside, const ErrorChange& outside) {
+  const auto reduction = [](const ErrorChange& change) { return change.mean_before - change.mean_after; };
+  const auto error = [&](const ErrorChange& change) { return change.t == 0.0 ? 0.0 : reduction(change) / change.t; };
+  const double variance = std::pow((1.0 - thresholds::part_beyond) * error(inside), 2) +
+                          std::pow(thresholds::part_beyond * error(outside), 2);
+  return expected(reduction(inside), reduction(outside)) / (std::sqrt(variance) + 1e-300);
+}
+
 /// Whether what is lost beyond the fitted poses is more than what is gained among them, in the mean or in the 99 %
 /// point of all poses.
 bool outweighs_gain(const ErrorChange& inside, const ErrorChange& outside) {
-  return (mean_rises(outside) &&
-          expected(inside.mean_after, outside.mean_after) > expected(inside.mean_before, outside.mean_before)) ||
+  return t_of_expected(inside, outside) < -thresholds::harm_significance ||
          (rises(outside.p99) &&
           expected(inside.p99.after, outside.p99.after) > expected(inside.p99.before, outside.p99.before));
 }

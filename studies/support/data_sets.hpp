@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measured and simulated robots for the study of regret.
+// Measured and simulated robots for studies of calibration.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 #include "kinfer/calibrate/problem/task.hpp"
 
-namespace kinfer::study::regret_study {
+namespace kinfer::study {
 
 struct NamedTask {
   std::string name;
@@ -27,4 +27,4 @@ struct RigidRobot {
 };
 RigidRobot rigid_robot(int seed);
 
-}  // namespace kinfer::study::regret_study
+}  // namespace kinfer::study

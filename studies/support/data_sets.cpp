@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "studies/regret/data_sets.hpp"
+#include "studies/support/data_sets.hpp"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include "studies/support/files.hpp"
 #include "support/instruments.hpp"
 
-namespace kinfer::study::regret_study {
+namespace kinfer::study {
 using namespace calibrate;
 using namespace test;
 namespace {
@@ -114,4 +114,4 @@ std::vector<NamedTask> named_tasks(const std::string& wanted, int simulated) {
   return tasks;
 }
 
-}  // namespace kinfer::study::regret_study
+}  // namespace kinfer::study
