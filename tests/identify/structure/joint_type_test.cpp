@@ -106,6 +106,41 @@ TEST(JointType, OfALongRecordingIsToldBesideDriftingHeadings) {
             EstimatedJointType::universal);
 }
 
+/// The child's heading is another one behind each of three gaps of 2 s.
+RecordedMotion with_gaps(RecordedMotion motion) {
+  SegmentMotion& child = motion.segments.back();
+  const double length = motion.time.back();
+  child.restarts = {0.25 * length, 0.5 * length, 0.8 * length};
+  constexpr double steps[] = {0.0, 0.3, -0.2, 0.25};  // [rad]
+  for (std::size_t row = 0; row < motion.rows(); ++row) {
+    const double time = motion.time[row];
+    const auto gaps = std::ranges::upper_bound(child.restarts, time) - child.restarts.begin();
+    for (const double middle : child.restarts)
+      if (std::abs(time - middle) < 1.0) motion.usable[row] = false;
+    const Mat3 turn = rot_z(steps[gaps]);
+    child.rotation[row] = turn * child.rotation[row];
+    for (Vec3* v : {&child.angular_velocity[row], &child.angular_acceleration[row], &child.acceleration[row]})
+      *v = turn * *v;
+  }
+  return motion;
+}
+
+TEST(JointType, IsToldBesideHeadingsThatStepBehindGaps) {
+  constexpr std::size_t rows = 6000;
+  const DhLeaf mount{.theta = 0.7, .d = 0.2, .alpha = -1.1, .a = 0.5}, end{.theta = -1.9, .d = 0.15, .alpha = 0.3},
+      first{.alpha = 1.4, .theta_signal = 0}, second{.theta = 1.5, .alpha = -1.3, .theta_signal = 1},
+      third{.theta_signal = 2};
+  const std::vector<JointSignal> waves{wave(0.6, 0.9, 1.0, rows), wave(0.15, 1.3, 0.2, rows),
+                                       wave(0.1, 0.5, 2.0, rows)};
+  const auto stated = [&](const std::vector<DhLeaf>& leaves) {
+    return type_of(with_gaps(two_segments(leaves, waves, rows))).type;
+  };
+  EXPECT_EQ(stated({mount, end}), EstimatedJointType::rigid);
+  EXPECT_EQ(stated({mount, first, end}), EstimatedJointType::revolute);
+  EXPECT_EQ(stated({mount, first, second, end}), EstimatedJointType::universal);
+  EXPECT_EQ(stated({mount, first, second, third, end}), EstimatedJointType::spherical);
+}
+
 TEST(JointType, ASphericalJointFarFromTheBaseIsNotRevolute) {
   const DhLeaf mount{.theta = 0.7, .d = 0.2, .alpha = -1.1, .a = 0.5}, end{.theta = -1.9, .d = 0.15, .alpha = 0.3};
   const DhLeaf first{.alpha = 1.4, .theta_signal = 0}, second{.theta = 1.5, .alpha = -1.3, .theta_signal = 1},

@@ -26,12 +26,16 @@ MeanAxis mean_axis(const std::vector<Mat3>& rotations) {
   return {in_child, (sum * in_child).normalized()};
 }
 
-/// The headings of the child relative to the parent's, as angles about the vertical at the middles of windows.
+/// The headings of the child relative to the parent's between two gaps, as angles about the vertical at the middles of
+/// windows; one window: a constant.
 struct HeadingDrift {
-  double begin = 0.0;         // [s]
-  std::vector<double> angle;  // [rad] of the windows, continuous
+  std::vector<std::size_t> rows;  // among those that are evaluated
+  double begin = 0.0;             // [s]
+  std::vector<double> angle{};    // [rad] of the windows, continuous
 
-  std::size_t window_of(double time) const { return static_cast<std::size_t>((time - begin) / heading_drift_window); }
+  std::size_t window_of(double time) const {
+    return std::min(angle.size() - 1, static_cast<std::size_t>((time - begin) / heading_drift_window));
+  }
   double at(double time) const {
     const double last = static_cast<double>(angle.size() - 1),
                  along = std::clamp((time - begin) / heading_drift_window - 0.5, 0.0, last);
@@ -40,11 +44,40 @@ struct HeadingDrift {
   }
 };
 
+std::vector<double> restarts_of_either(const SegmentMotion& parent, const SegmentMotion& child) {
+  std::vector<double> restarts = parent.restarts;
+  restarts.insert(restarts.end(), child.restarts.begin(), child.restarts.end());
+  std::ranges::sort(restarts);
+  return restarts;
+}
+
+/// One for each part of the rows between gaps of either sensor: behind a gap a heading is another one.
+std::vector<HeadingDrift> headings_between_gaps(const RecordedMotion& motion, const SegmentMotion& parent,
+                                                const SegmentMotion& child, const std::vector<std::size_t>& rows) {
+  const std::vector<double> restarts = restarts_of_either(parent, child);
+  std::vector<HeadingDrift> parts;
+  std::size_t gaps = 0, last_gaps = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double time = motion.time[rows[i]];
+    while (gaps < restarts.size() && restarts[gaps] <= time) ++gaps;
+    if (parts.empty() || gaps != last_gaps) parts.push_back({.rows = {}, .begin = time});
+    parts.back().rows.push_back(i);
+    last_gaps = gaps;
+  }
+  for (HeadingDrift& part : parts) {
+    const double length = motion.time[rows[part.rows.back()]] - part.begin;
+    const auto windows = static_cast<std::size_t>(length / heading_drift_window) + 1;
+    part.angle.assign(windows < least_drift_windows ? 1 : windows, 0.0);
+  }
+  return parts;
+}
+
 /// The drift that leaves least of the motion of one axis. A vertical axis tells nothing of it: then it is small.
 void fit_drift(HeadingDrift& drift, const MeanAxis& axis, const RecordedMotion& motion, const SegmentMotion& parent,
                const SegmentMotion& child, const std::vector<std::size_t>& rows) {
   std::vector<Vec2> match(drift.angle.size(), Vec2::Zero());  // cosine and sine of the angle, times a weight
-  for (const std::size_t row : rows) {
+  for (const std::size_t i : drift.rows) {
+    const std::size_t row = rows[i];
     const Vec3 of_parent = parent.rotation[row] * axis.in_parent, of_child = child.rotation[row] * axis.in_child;
     match[drift.window_of(motion.time[row])] +=
         Vec2(of_child.head<2>().dot(of_parent.head<2>()) + weight_of_no_drift, of_child.cross(of_parent).z());
@@ -61,15 +94,16 @@ void fit_drift(HeadingDrift& drift, const MeanAxis& axis, const RecordedMotion& 
 std::vector<Mat3> without_heading_drift(const RecordedMotion& motion, const SegmentMotion& parent,
                                         const SegmentMotion& child, const std::vector<std::size_t>& rows,
                                         std::vector<Mat3> rotations) {
-  if (rows.empty()) return rotations;
-  HeadingDrift drift{motion.time[rows.front()], {}};
-  drift.angle.resize(drift.window_of(motion.time[rows.back()]) + 1);
-  if (drift.angle.size() < least_drift_windows) return rotations;
+  std::vector<HeadingDrift> parts = headings_between_gaps(motion, parent, child, rows);
+  if (parts.empty() || (parts.size() == 1 && parts.front().angle.size() == 1)) return rotations;
   for (int pass = 0; pass < heading_drift_passes; ++pass) {
-    fit_drift(drift, mean_axis(rotations), motion, parent, child, rows);
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      rotations[i] =
-          parent.rotation[rows[i]].transpose() * rot_z(drift.at(motion.time[rows[i]])) * child.rotation[rows[i]];
+    const MeanAxis axis = mean_axis(rotations);
+    for (HeadingDrift& part : parts) {
+      fit_drift(part, axis, motion, parent, child, rows);
+      for (const std::size_t i : part.rows)
+        rotations[i] =
+            parent.rotation[rows[i]].transpose() * rot_z(part.at(motion.time[rows[i]])) * child.rotation[rows[i]];
+    }
   }
   return rotations;
 }

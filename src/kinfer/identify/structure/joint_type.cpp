@@ -69,13 +69,9 @@ std::array<double, 3> largest_first(const VectorXd& squares) {
   return {root(2), root(1), root(0)};
 }
 
-/// [rad] The headings behind a gap of 2 s at 1 rad/s were 11 and 16° off.
-constexpr double heading_error_behind_gaps = 15.0 * degree;
-
 struct PairMotion {
   RelativeMotion relative;
-  std::vector<Mat3> rotation;  // parent_R_child without the drift of headings
-  double heading_error = 0.0;  // [rad] behind gaps of either sensor
+  std::vector<Mat3> rotation;  // parent_R_child without the drift of headings and their steps behind gaps
   SymmetricEigen rates;        // mean squares, least first
   RigidRates rigid;
   UniversalAxes two_axes;
@@ -86,7 +82,7 @@ PairMotion pair_motion(const RecordedMotion& motion, const SegmentTree& tree, st
                        const std::vector<std::size_t>& rows) {
   const std::size_t parent = *tree.parent[child];
   const PairFit& pair = tree.pair(parent, child);
-  PairMotion j{relative_motion(motion.segments[parent], motion.segments[child], rows), {}, 0.0, {}, {}, {}, {}};
+  PairMotion j{relative_motion(motion.segments[parent], motion.segments[child], rows), {}, {}, {}, {}, {}};
   j.rotation =
       without_heading_drift(motion, motion.segments[parent], motion.segments[child], rows, j.relative.rotation);
   j.rigid = rigid_rates(motion, motion.segments[parent], motion.segments[child]);
@@ -98,8 +94,6 @@ PairMotion pair_motion(const RecordedMotion& motion, const SegmentTree& tree, st
                                return Vec3(j.relative.rotation[i].transpose() * j.relative.angular_velocity[i]);
                              }).vectors.col(2);
   j.two_axes = universal_axes(j.rotation, j.rates.vectors);
-  if (!motion.segments[parent].restarts.empty() || !motion.segments[child].restarts.empty())
-    j.heading_error = heading_error_behind_gaps;
   return j;
 }
 
@@ -114,12 +108,9 @@ double mean_deviation(const std::vector<Mat3>& rotations, Eigen::Index of) {
 
 /// What the motion leaves to each type.
 MotionDeviations motion_deviations(const PairMotion& j) {
-  const auto beyond_headings = [&](double d) {
-    return std::sqrt(std::max(0.0, d * d - j.heading_error * j.heading_error));
-  };
-  return {.rotation = mean_deviation(j.relative.rotation, 0),
-          .axis = beyond_headings(mean_deviation(j.rotation, 2)),
-          .plane = beyond_headings(j.two_axes.deviation),
+  return {.rotation = mean_deviation(j.rotation, 0),
+          .axis = mean_deviation(j.rotation, 2),
+          .plane = j.two_axes.deviation,
           .axes_angle = j.two_axes.angle,
           .rate_share =
               j.evidence.rates[0] / std::hypot(j.relative.rms_rate, relative_rate_noise / rigid_rate_share.median),
