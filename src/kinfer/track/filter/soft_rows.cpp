@@ -22,10 +22,12 @@ void SoftRows::add(const FilterModel& model, const ChainState& state, const Matr
   const auto rests_at = [&](SteadyVelocity& steady, Index velocity, const RestOdds& odds) {
     return rests(steady, state.joints[velocity - base_states], p(velocity, velocity), odds, length);
   };
-  if (state.base == BaseMode::moving)
+  if (state.base == BaseMode::moving) {
+    base_speed_.add(state.velocity, p.diagonal().segment<3>(BaseIndex::velocity), length);
     for (Index k = 0; k < 3; ++k)
-      system.derivative(system.append(-state.velocity[k], worth(base_velocity_sd, base_velocity_time)),
+      system.derivative(system.append(-state.velocity[k], worth(base_speed_.sd(), base_velocity_time)),
                         BaseIndex::velocity + k) = 1.0;
+  }
   for (std::size_t k = 0; k < model.prismatic.size(); ++k) {
     const PrismaticRange& range = model.prismatic[k];
     const double* x = state.joints.data() + position_states * range.position;

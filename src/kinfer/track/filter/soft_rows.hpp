@@ -5,6 +5,7 @@
 // N(0, σ²) with a correlation time τ is worth white noise of variance σ² 2τ / length in each block.
 #pragma once
 
+#include "kinfer/track/filter/base_speed.hpp"
 #include "kinfer/track/filter/chain_state.hpp"
 #include "kinfer/track/filter/update_system.hpp"
 
@@ -28,6 +29,7 @@ class SoftRows {
   static bool rests(SteadyVelocity& steady, double velocity, double variance, const RestOdds& odds, double length);
   bool shows_acceleration(const FilterModel& model, BaseMode base, const UpdateSystem& system, Index position);
 
+  BaseSpeed base_speed_;
   std::vector<SteadyVelocity> prismatic_, revolute_;  // of these joints of the model
   MatrixXd accelerations_;                            // information about those of joints and base
   VectorXd solution_;

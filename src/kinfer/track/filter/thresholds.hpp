@@ -18,8 +18,12 @@ inline constexpr double acceleration_room = 2.0;       ///< a drive may be so mu
 
 /// A base that moves: a machine that rocks on its tracks. Simulated machines on a rocking and on a yawing base.
 inline constexpr AccelerationProcess base_rotation{.sd = 0.6, .time = 0.3}, base_translation{.sd = 0.3, .time = 0.3};
-inline constexpr double base_velocity_sd = 0.3;    ///< [m/s] of the base
+inline constexpr double base_velocity_sd = 0.3;    ///< [m/s] of a base that begins to move
 inline constexpr double base_velocity_time = 1.0;  ///< [s] its correlation time
+/// Its level [m/s] is that of the last [s]; before any row it is this, and counts as much as [s] of motion; least.
+/// Simulated excavators 51 to 53 on rocking bases, industrial.
+inline constexpr double first_base_speed = 0.1, base_speed_memory = 10.0, base_speed_prior = 2.0,
+                        least_base_speed = 0.02;
 
 /// Of prismatic joints: least speed [m/s] and correlation times [s] of velocity and position about what was seen; room
 /// beyond it, and half the range where nothing was seen [m].
