@@ -9,6 +9,7 @@
 #include "calibrate/functions/nominal_fits.hpp"
 #include "calibrate/terms/simulated_selection.hpp"
 #include "kinfer/calibrate/calibrate.hpp"
+#include "kinfer/deploy/predict.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/words/calibration/model.hpp"
 
@@ -99,6 +100,27 @@ TEST(HarmonicSeries, TheDefaultModelTakesThemWhereTheyExplainMore) {
   const PoseSet unseen = bent_readings(nominal_robot(), 200, {1, 2}, 7);
   EXPECT_LT(mean_error(c.estimate.chain, unseen),
             2.0 * mean_error(nominal_robot(), bent_readings(nominal_robot(), 200, {}, 7)));
+}
+
+/// A joint's offset and the constant of its series explain the same: neither is known, and the tool is.
+TEST(HarmonicSeries, StandardDeviationsOfPredictionsAreThoseOfTheirErrors) {
+  for (int seed = 1; seed <= 3; ++seed) {
+    const PoseSet data = bent_readings(nominal_robot(), 200, {1, 2}, seed);
+    const Calibration c = calibrate_robot({nominal_robot(), {}, tracker, data}, {}, Rng(1)).value();
+    ASSERT_FALSE(joints_with_series(c.estimate.chain).empty());
+    PoseSet unseen = bent_readings(nominal_robot(), 300, {1, 2}, 20 + seed);
+    const Chain chain = corrected_chain(c);
+    const auto poses = deploy::predict_poses(chain, unseen, c.prediction).value();
+    const auto spread = deploy::predict_uncertainties(chain, *c.prediction, unseen).value();
+    double squares = 0.0, expected = 0.0;
+    for (const PointMeasurement& point : unseen.points) {
+      const auto row = static_cast<std::size_t>(point.row);
+      squares += (point.position - poses[row].position).squaredNorm();
+      expected += spread[row].position.trace() + 3.0 * std::pow(position_sd(tracker, point.position), 2);
+    }
+    EXPECT_GT(expected / squares, 0.8 * 0.8) << seed;
+    EXPECT_LT(expected / squares, 1.6 * 1.6) << seed;
+  }
 }
 
 TEST(HarmonicSeries, AreTheSameFor12And7Threads) {

@@ -14,7 +14,7 @@ std::vector<bool> inliers_of(const Estimate& fitted, const PoseSet& rows) {
 }
 
 Estimate with_covariance(Estimate fit, const ParameterSet& set, const MatrixXd& covariance, const VectorXd& variances) {
-  fit.parameters = set, fit.covariance = covariance;
+  fit.parameters = set, fit.covariance = covariance, fit.covariance_beside_series.resize(0, 0);
   const VectorXd values = pack(set, fit.chain);
   for (std::size_t k = 0; k < fit.values.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);

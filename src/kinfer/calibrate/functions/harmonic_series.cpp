@@ -128,7 +128,7 @@ Estimate fit_with_series(const Chain& start, const ParameterSet& set, const Pose
   const bool is_near = options.initial_guess == InitialGuess::near_optimum;  // only noise level and inliers are needed
   Estimate fit = fit_others(Detail::numbers_only, options.initial_guess, is_near ? 1 : options.max_iterations);
   model.plain = fit.chain;
-  MatrixXd covariance = fit.covariance, response;
+  MatrixXd covariance = fit.covariance, beside_series = covariance, response;
   for (int round = 0; round < thresholds::series_rounds; ++round) {
     const std::vector<bool> inliers = inliers_of(fit, rows);
     const PoseSet kept_moved = keep_measurements(moved, inliers);
@@ -141,7 +141,8 @@ Estimate fit_with_series(const Chain& start, const ParameterSet& set, const Pose
     const SeriesProblem problem(model, {kept, weights, options.threads});
     SeriesProblem::Step step = problem.step();
     const double gain = problem.relative_gain(step.step);
-    covariance = std::move(step.covariance), response = std::move(step.response);
+    covariance = std::move(step.covariance), beside_series = std::move(step.covariance_beside_series);
+    response = std::move(step.response);
     model = problem.moved_by(step.step);
     if (is_near && gain <= thresholds::settled_noise)
       break;  // one linear step from the optimum of nearly the same rows
@@ -158,7 +159,9 @@ Estimate fit_with_series(const Chain& start, const ParameterSet& set, const Pose
   }
   fit.chain = attach(model.plain, model.series);
   fit.series_response = response;
-  return with_covariance(std::move(fit), set, covariance, covariance.diagonal());
+  Estimate found = with_covariance(std::move(fit), set, covariance, covariance.diagonal());
+  found.covariance_beside_series = std::move(beside_series);
+  return found;
 }
 
 }  // namespace kinfer::calibrate

@@ -107,7 +107,10 @@ SeriesProblem::Step SeriesProblem::step() const {
   const auto lower = root.triangularView<Eigen::Lower>();
   const MatrixXd across = lower.solve(matrix.bottomLeftCorner(n, p));
   const VectorXd own = lower.solve(gradient.tail(n));
-  Step found{VectorXd(p + n), invert_but_for_rounding(matrix.topLeftCorner(p, p) - across.transpose() * across), {}};
+  Step found{VectorXd(p + n),
+             invert_but_for_rounding(matrix.topLeftCorner(p, p) - across.transpose() * across),
+             invert_but_for_rounding(matrix.topLeftCorner(p, p)),
+             {}};
   found.step.head(p) = -(found.covariance * (gradient.head(p) - across.transpose() * own));
   found.step.tail(n) = -lower.transpose().solve(own + across * found.step.head(p));
   found.response = of_all_knots(-lower.transpose().solve(across));

@@ -32,9 +32,10 @@ class SeriesProblem {
   double log_bayes_factor(const Solution& s, std::size_t series) const;
 
   struct Step {
-    VectorXd step;        ///< as in a solution
-    MatrixXd covariance;  ///< of the parameters alone, the series being unknown
-    MatrixXd response;    ///< derivatives of all knots of the series by the parameters, the series at their best
+    VectorXd step;                      ///< as in a solution
+    MatrixXd covariance;                ///< of the parameters alone, the series being unknown
+    MatrixXd covariance_beside_series;  ///< the series being as found
+    MatrixXd response;  ///< derivatives of all knots of the series by the parameters, the series at their best
   };
 
   /// The solution at noise 1 by elimination of the series, whose own covariance takes a multiple of the time.

@@ -85,7 +85,7 @@ HeldOutResiduals residuals_of(const Estimate& fit, const PredictionModel& model,
     const auto& [tool, weight, shift, turn] = predicted[static_cast<std::size_t>(point.row)];
     const Vec3 arm = point.target < 0 ? Vec3::Zero().eval() : Vec3(tool.rotation * fit.chain.targets[point.target].xyz);
     all.points.push_back(in_base(world_R_base(point.row), point.position - tool.position - arm,
-                                 point_columns(at.twists[point.row], arm), fit.covariance,
+                                 point_columns(at.twists[point.row], arm), covariance_of_predictions(fit),
                                  covariance_of(weights.of<PointMeasurement>()[k], point.axes)));
     const Vec3 apart = world_R_base(point.row).transpose() * shift;
     all.points.back().open =
@@ -98,7 +98,7 @@ HeldOutResiduals residuals_of(const Estimate& fit, const PredictionModel& model,
     const auto& [tool, weight, shift, faded] = predicted[static_cast<std::size_t>(measured.row)];
     const Vec3 turn = log_so3(measured.orientation.toRotationMatrix() * tool.rotation.transpose());
     const MatrixXd jacobian = at.twists[measured.row].bottomRows<3>();
-    all.rotations.push_back(in_base(world_R_base(measured.row), turn, jacobian, fit.covariance,
+    all.rotations.push_back(in_base(world_R_base(measured.row), turn, jacobian, covariance_of_predictions(fit),
                                     covariance_of(weights.of<OrientationMeasurement>()[k], measured.axes)));
     const Vec3 apart = world_R_base(measured.row).transpose() * faded;
     all.rotations.back().open = weight * (1.0 - weight) * apart * apart.transpose();
@@ -336,7 +336,7 @@ std::optional<HeldOutPrediction> make_prediction_model(const EvaluationInputs& e
   if (evaluated.data.points.empty()) return std::nullopt;
   PredictionModel model;
   for (const Parameter* parameter : estimate.parameters.free()) model.parameters.push_back(parameter->name);
-  model.root = covariance_root(estimate.covariance);
+  model.root = covariance_root(covariance_of_predictions(estimate));
   if (beyond) model.beyond = change_beyond(estimate, *beyond);
   describe_region(model, evaluated.data.joints(Eigen::all, evaluated.plan.fitted));
   HeldOutResiduals held_out = held_out_residuals(evaluated, model);

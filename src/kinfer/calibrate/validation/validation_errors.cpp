@@ -255,8 +255,9 @@ std::optional<ExpectedErrors> expected_holdout_errors(const EvaluationInputs& ev
       };
       // A fixture of which every fitted row was rejected is not known; its rows tell nothing.
       constexpr double unknown_fixture = 1e4;  // [m²]
-      if (!(metres * metres * of_fit(fit.covariance) < unknown_fixture)) continue;
-      squares += metres * metres * (noise + of_fit(fit.covariance));
+      const double by_fit = of_fit(covariance_of_predictions(fit));
+      if (!(metres * metres * by_fit < unknown_fixture)) continue;
+      squares += metres * metres * (noise + by_fit);
       squares_by_noise += metres * metres * (noise + of_fit(by_noise));
       count += 1.0;
     }

@@ -80,6 +80,9 @@ struct Estimate {
   ParameterSet parameters;
   std::vector<ParameterEstimate> values;  ///< of the free parameters, in order
   MatrixXd covariance;                    ///< of the free parameters, SI, inflated where the residuals exceed the noise
+  /// The same, series being as found: where a parameter and a series explain the same, they move against each other,
+  /// and the tool does not. Empty of a chain without series.
+  MatrixXd covariance_beside_series;
   /// Derivatives of the series' coefficients, all knots of one series after those of the one before, by the free
   /// parameters where every series is at its best beside them; empty of a chain without series.
   MatrixXd series_response;
@@ -95,5 +98,12 @@ struct Estimate {
       0.0;  ///< [m] rms tool error expected over the data's poses; of a calibration with model error
   SearchSummary search;
 };
+
+/// Of the free parameters, by what they move the tool: functions of joint positions being as found. What they leave
+/// open is part of the model error.
+inline const MatrixXd& covariance_of_predictions(const Estimate& estimate) {
+  const MatrixXd& beside = estimate.covariance_beside_series;
+  return beside.size() > 0 ? beside : estimate.covariance;
+}
 
 }  // namespace kinfer
