@@ -2,10 +2,10 @@
 #include "kinfer/kinematics/batch/pose_plan.hpp"
 
 #include <algorithm>
-#include <optional>
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/kinematics/forward.hpp"
+#include "kinfer/kinematics/poses/joint_factors.hpp"
 #include "kinfer/kinematics/poses/pose_program.hpp"
 
 namespace kinfer::batch {
@@ -13,26 +13,8 @@ namespace {
 
 using elementary::Motion;
 
-/// The constant factors of a joint before and after the one that moves.
-struct JointFactors {
-  Pose before, after;
-  std::optional<elementary::Factor> moving{};
-
-  void operator()(const Mat3& rotation) { constant().rotation *= rotation; }
-  void operator()(const elementary::Factor& factor) {
-    if (factor.moves)
-      moving = factor;
-    else
-      elementary::apply(constant(), factor.motion, factor.axis, factor.value);
-  }
-
- private:
-  Pose& constant() { return moving ? after : before; }
-};
-
 LoadedJoint loaded_joint(const Joint& joint) {
-  JointFactors factors;
-  elementary::for_each_factor(joint, factors);
+  const JointFactors factors(joint);
   LoadedJoint loaded{.parent = joint.parent};
   write_rows(factors.before, loaded.before), write_rows(factors.after, loaded.after);
   if (factors.moving) {

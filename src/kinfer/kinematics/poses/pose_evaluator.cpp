@@ -2,10 +2,10 @@
 // PoseEvaluator: executes the step lists of program.hpp.
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/kinematics/forward.hpp"
+#include "kinfer/kinematics/poses/joint_factors.hpp"
 #include "kinfer/kinematics/poses/pose_program.hpp"
 
 namespace kinfer {
@@ -44,37 +44,20 @@ void rotate(Pose& pose, int axis, double angle) {
   elementary::rotate(pose, axis, wave.cosine, wave.sine);
 }
 
-/// A joint whose constant factors are multiplied once: place_joint() without their sines and cosines.
-struct JointPlacer {
-  Pose before, after;
-  std::optional<elementary::Factor> moving;
-
-  explicit JointPlacer(const Joint& joint) { elementary::for_each_factor(joint, *this); }
-
-  void operator()(const Mat3& rotation) { constant().rotation *= rotation; }
-  void operator()(const elementary::Factor& factor) {
-    if (factor.moves)
-      moving = factor;
-    else
-      elementary::apply(constant(), factor.motion, factor.axis, factor.value);
-  }
-
-  JointPlacement place(const Pose& parent, double displacement) const {
-    JointPlacement placed{.frame = parent * before};
-    if (!moving) return placed;
-    placed.axis = placed.frame.rotation.col(moving->axis);
-    placed.point = placed.frame.position;
-    if (moving->motion == Motion::rotation)
-      rotate(placed.frame, moving->axis, moving->value + displacement);
-    else
-      elementary::translate(placed.frame, moving->axis, moving->value + displacement);
-    placed.frame = placed.frame * after;
-    return placed;
-  }
-
- private:
-  Pose& constant() { return moving ? after : before; }
-};
+/// place_joint() without the sines and cosines of the joint's constant factors.
+JointPlacement place(const Pose& parent, const JointFactors& joint, double displacement) {
+  JointPlacement placed{.frame = parent * joint.before};
+  if (!joint.moving) return placed;
+  const elementary::Factor& moving = *joint.moving;
+  placed.axis = placed.frame.rotation.col(moving.axis);
+  placed.point = placed.frame.position;
+  if (moving.motion == Motion::rotation)
+    rotate(placed.frame, moving.axis, moving.value + displacement);
+  else
+    elementary::translate(placed.frame, moving.axis, moving.value + displacement);
+  placed.frame = placed.frame * joint.after;
+  return placed;
+}
 
 /// Joint positions and loads at one pose.
 struct JointInputs {
@@ -92,7 +75,7 @@ struct PoseEvaluator::Program {
   Eigen::Index columns = 0;
   StepList pose_only, recorded;
   std::vector<JointMotionModel> motion_models;  // in the order of the joints
-  std::vector<JointPlacer> placers;
+  std::vector<JointFactors> factors;
   std::vector<Coupling> couplings;        // Coupling::joint is here an index into q
   std::vector<int> rotational, idle;      // columns that need the tool position; columns that are zero
   std::vector<ParameterAddress> address;  // of each column
@@ -108,7 +91,7 @@ struct PoseEvaluator::Program {
     const std::vector<int> q_index = active_joint_indices(chain);
     for (std::size_t j = 0; j < chain.joints.size(); ++j) {
       const Joint& joint = chain.joints[j];
-      placers.emplace_back(joint);
+      factors.emplace_back(joint);
       const int begin = static_cast<int>(couplings.size());
       for (const Coupling& c : joint.couplings) couplings.push_back({q_index[c.joint], c.factor});
       motion_models.push_back({joint.gain, q_index[j], joint.compliance, begin, static_cast<int>(couplings.size()),
@@ -276,7 +259,7 @@ struct PoseEvaluator::Program {
       double by = model.q_index >= 0 ? model.gain * q[model.q_index] : 0.0;
       for (int c = model.coupling_begin; c < model.coupling_end; ++c) by += couplings[c].factor * q[couplings[c].joint];
       const int parent = chain.joints[j].parent;
-      placed[j] = placers[j].place(parent >= 0 ? placed[parent].frame : base, by);
+      placed[j] = place(parent >= 0 ? placed[parent].frame : base, factors[j], by);
     }
     gravity_torques(chain, placed, payload_only, torques);
     return torques.data();
