@@ -6,7 +6,7 @@
 #include "kinfer/base/expect.hpp"
 #include "kinfer/kinematics/batch/batch_points.hpp"
 #include "kinfer/kinematics/batch/batch_population.hpp"
-#include "kinfer/kinematics/batch/batch_poses.hpp"
+#include "kinfer/kinematics/poses/batch_poses.hpp"
 #include "paper2_case.hpp"
 #include "peers/ceres_jets.hpp"
 #include "peers/fma_peak.hpp"

@@ -4,7 +4,7 @@
 #include "kinfer/base/version.hpp"
 #include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
-#include "kinfer/kinematics/batch/tool_poses.hpp"
+#include "kinfer/kinematics/poses/tool_poses.hpp"
 
 namespace kinfer::python {
 namespace {

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "kinfer/kinematics/batch/batch_points.hpp"
-#include "kinfer/kinematics/batch/tool_derivatives.hpp"
 #include "kinfer/kinematics/forward.hpp"
+#include "kinfer/kinematics/poses/tool_derivatives.hpp"
 #include "laws/example_chains.hpp"
 #include "support/differences.hpp"
 #include "support/kernels.hpp"

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "kinfer/io/robot/toml/robot_toml.hpp"
-#include "kinfer/kinematics/batch/tool_poses.hpp"
+#include "kinfer/kinematics/poses/tool_poses.hpp"
 
 namespace kinfer {
 namespace {

@@ -11,7 +11,7 @@
 #include "kinfer/estimate/poses/pose_normal_equations.hpp"
 #include "kinfer/estimate/poses/redundancy.hpp"
 #include "kinfer/geometry/statistics.hpp"
-#include "kinfer/kinematics/batch/tool_derivatives.hpp"
+#include "kinfer/kinematics/poses/tool_derivatives.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/linalg/normal_equations.hpp"
 #include "kinfer/linalg/products.hpp"

@@ -10,7 +10,7 @@
 #include "kinfer/base/expect.hpp"
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/estimate/poses/point_fit.hpp"
-#include "kinfer/kinematics/batch/batch_poses.hpp"
+#include "kinfer/kinematics/poses/batch_poses.hpp"
 
 namespace kinfer {
 namespace {

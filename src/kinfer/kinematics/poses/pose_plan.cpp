@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/kinematics/batch/pose_plan.hpp"
+#include "kinfer/kinematics/poses/pose_plan.hpp"
 
 #include <algorithm>
 

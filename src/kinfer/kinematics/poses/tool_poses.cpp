@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/kinematics/batch/tool_poses.hpp"
+#include "kinfer/kinematics/poses/tool_poses.hpp"
 
 #include <algorithm>
 #include <vector>
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/base/parallel.hpp"
-#include "kinfer/kinematics/batch/batch_poses.hpp"
+#include "kinfer/kinematics/poses/batch_poses.hpp"
 
 namespace kinfer {
 namespace {

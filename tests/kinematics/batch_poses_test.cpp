@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Poses of many rows by the kernels, judged by PoseEvaluator, which finds them one by one.
-#include "kinfer/kinematics/batch/batch_poses.hpp"
+#include "kinfer/kinematics/poses/batch_poses.hpp"
 
 #include <gtest/gtest.h>
 

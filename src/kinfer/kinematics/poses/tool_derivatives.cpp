@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/kinematics/batch/tool_derivatives.hpp"
+#include "kinfer/kinematics/poses/tool_derivatives.hpp"
 
 #include <vector>
 
 #include "kinfer/kinematics/batch/batch_points.hpp"
-#include "kinfer/kinematics/batch/batch_poses.hpp"
+#include "kinfer/kinematics/poses/batch_poses.hpp"
 
 namespace kinfer {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/kinematics/batch/tool_poses.hpp"
+#include "kinfer/kinematics/poses/tool_poses.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/kinematics/batch/batch_poses.hpp"
+#include "kinfer/kinematics/poses/batch_poses.hpp"
 
 #include <algorithm>
 #include <vector>
 
 #include "kinfer/base/expect.hpp"
-#include "kinfer/kinematics/batch/pose_plan.hpp"
+#include "kinfer/kinematics/poses/pose_plan.hpp"
 
 namespace kinfer {
 namespace {
