@@ -92,6 +92,22 @@ TrackingModel exact_model(const SimulatedDrive& drive, const std::string& grade)
                                  {.rotation = 1e-7, .point = 1e-6});
 }
 
+void change_biases(double share, const std::string& grade, std::uint64_t seed, SimulatedDrive& drive) {
+  const SensorModel model = *sensor_grade(grade);
+  Rng rng = Rng(seed).stream(4);
+  for (InsSensor& sensor : drive.recording.sensors) {
+    Vec3 rate, force;
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      rate[k] = share * model.gyroscope.bias_sd * rng.normal();
+      force[k] = share * model.accelerometer.bias_sd * rng.normal();
+    }
+    for (std::size_t row = 0; row < sensor.rows(); ++row) {
+      set_row(sensor.angular_velocity, row, sensor.angular_velocity.at(row) + rate);
+      set_row(sensor.acceleration, row, sensor.acceleration.at(row) + force);
+    }
+  }
+}
+
 void inject(const InjectedFault& fault, SimulatedDrive& drive) {
   if (fault.kind == FaultKind::none) return;
   if (fault.kind == FaultKind::play) return rattle(fault, drive);

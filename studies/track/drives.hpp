@@ -36,6 +36,10 @@ Result<TrackingModel> identify_drive(const SimulatedDrive& drive);
 /// Joint positions are the machine's own.
 TrackingModel exact_model(const SimulatedDrive& drive, const std::string& grade);
 
+/// Sensors that were switched off and on again: each bias changed by a random number of this standard deviation, as a
+/// share of the grade's.
+void change_biases(double share, const std::string& grade, std::uint64_t seed, SimulatedDrive& drive);
+
 /// A change of the recording from `begin` on; play is in the joint before the sensor and moves all beyond it.
 enum class FaultKind { none, turned, shifted, play, lost, late };
 struct InjectedFault {

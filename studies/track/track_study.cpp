@@ -26,7 +26,7 @@ struct Arguments {
   Base base = Base::still;
   Script script = Script::standard;
   int first_seed = 1, seeds = 1;
-  double duration = 120.0, steel = 0.0, judged_from = 0.0;
+  double duration = 120.0, steel = 0.0, judged_from = 0.0, power_up = 0.0;
   InjectedFault fault{};
   bool counts_alarms = false, smooths = false, is_exact = false;
 };
@@ -80,6 +80,7 @@ void run(const Arguments& a) {
                                                 .drive_seed = 1000 + number,
                                                 .steel = a.steel,
                                                 .known_sensors = a.is_exact});
+        if (a.power_up > 0.0) change_biases(a.power_up, grade, number, second);
         inject(a.fault, second);
         const SimulatedDrive* zeros = a.is_exact ? nullptr : &first;
         print(machine, grade, seed, track(*model, zeros, second, {.from = a.judged_from}));
@@ -108,6 +109,8 @@ int kinfer::study::run_track(int argc, char** argv) {
   app.add_option("--duration", arguments.duration, "Of a drive [s]");
   app.add_option("--judge-from", arguments.judged_from, "Errors before this time of the drive do not count [s]");
   app.add_option("--steel", arguments.steel, "Field of moving steel [µT]");
+  app.add_option("--power-up", arguments.power_up,
+                 "Biases have changed since the identification, by so much of the grade's standard deviation");
   app.add_option("--smooth", arguments.smooths, "on: the smoother's row below the filter's");
   app.add_option("--exact", arguments.is_exact,
                  "on: the machine's own geometry and sensors without biases and scale errors, the best there can be");

@@ -195,6 +195,11 @@ void Tracker::try_start() {
   if (is_rough && block.time - *waits_since_ < start_patience) return;
   waits_since_.reset();
   settle(posture, filter_, waiting_);
+  if (!restarted_) {
+    weigh_biases(posture);
+    posture = initial_posture(*model_, block, guesses_, base_.mode());
+    settle(posture, filter_, waiting_);
+  }
   start_in(posture, filter_);
   follow_turns(posture, block, guesses_, filter_);
   positions_.begin(*model_, posture, filter_.state().base);
@@ -205,6 +210,14 @@ void Tracker::try_start() {
   state_.started = true;
   now_ = filter_.state();
   list_wrong_starts(posture);
+}
+
+/// Biases that are those of the identification are known better than others.
+void Tracker::weigh_biases(const InitialPosture& posture) {
+  const ChainFilter before = filter_;
+  model_ = std::make_shared<FilterModel>(with_power_up(*model_, change_of_biases(*model_, filter_, posture, waiting_)));
+  filter_ = ChainFilter(model_);
+  filter_.judge_as(before);
 }
 
 void Tracker::list_wrong_starts(const InitialPosture& posture) {

@@ -29,6 +29,7 @@
 #include "kinfer/track/rows/row_block.hpp"
 #include "kinfer/track/start/known_positions.hpp"
 #include "kinfer/track/start/position_guesses.hpp"
+#include "kinfer/track/start/power_up.hpp"
 #include "kinfer/track/start/settled_start.hpp"
 #include "kinfer/track/start/start_by_turn.hpp"
 #include "kinfer/track/start/start_grid.hpp"
@@ -58,6 +59,7 @@ class Tracker {
   void forget_state();
   void wait_for_start();
   void try_start();
+  void weigh_biases(const InitialPosture& posture);
   void list_wrong_starts(const InitialPosture& posture);
   void process_block(const BlockMeasurement& block);
   void resolve_start(const BlockMeasurement& block);

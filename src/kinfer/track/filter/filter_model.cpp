@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/base/square.hpp"
 #include "kinfer/track/filter/thresholds.hpp"
 
 namespace kinfer::track {
@@ -80,18 +81,23 @@ MatrixXd slow_covariance(const FilterModel& filter, const TrackingModel& model) 
     for (std::size_t j = 0; j < at.size(); ++j)
       if (at[i] >= 0 && at[j] >= 0)
         covariance(at[i], at[j]) = model.covariance(static_cast<Index>(i), static_cast<Index>(j));
-  // Biases moved since the chain was identified, by their instability and from one power-up to the next.
-  const auto change_of = [](double least, double instability, double bias) {
-    return std::max(least, std::hypot(bias_change * instability, power_up_part * bias));
-  };
-  const InsLevel &drift = model.prior.bias_instability, &bias = model.prior.bias;
-  const double rate = change_of(min_bias_change.rate, drift.rate, bias.rate),
-               force = change_of(min_bias_change.force, drift.force, bias.force);
-  for (Index s = 0; s < filter.layout.sensors; ++s) {
-    covariance.diagonal().segment<3>(sensor_states * s + SensorIndex::gyroscope_bias).array() += rate * rate;
-    covariance.diagonal().segment<3>(sensor_states * s + SensorIndex::accelerometer_bias).array() += force * force;
-  }
   return covariance;
+}
+
+void widen_biases(MatrixXd& covariance, Index sensor, const InsLevel& variance) {
+  const Index first = sensor_states * sensor;
+  covariance.diagonal().segment<3>(first + SensorIndex::gyroscope_bias).array() += variance.rate;
+  covariance.diagonal().segment<3>(first + SensorIndex::accelerometer_bias).array() += variance.force;
+}
+
+/// Biases moved since the chain was identified, by their instability and from one power-up to the next.
+void set_bias_changes(FilterModel& filter, const TrackingPrior& prior) {
+  const InsLevel drift{std::max(min_bias_change.rate, bias_change * prior.bias_instability.rate),
+                       std::max(min_bias_change.force, bias_change * prior.bias_instability.force)};
+  filter.power_up = {square(power_up_part * prior.bias.rate), square(power_up_part * prior.bias.force)};
+  for (Index i = 0; i < filter.layout.sensors; ++i)
+    widen_biases(filter.parameters, i,
+                 {square(drift.rate) + filter.power_up.rate, square(drift.force) + filter.power_up.force});
 }
 
 /// Root mean square over the directions of the axes on each sensor's segment, of its own joint and those of the next
@@ -231,8 +237,22 @@ FilterModel filter_model(const TrackingModel& model) {
   filter.bias_walk = {2.0 * drift.rate * drift.rate / time, 2.0 * drift.force * drift.force / time};
   filter.bias = model.prior.bias;
   filter.parameters = slow_covariance(filter, model);
+  set_bias_changes(filter, model.prior);
   set_axis_sds(filter);
   return filter;
+}
+
+FilterModel with_power_up(FilterModel model, const InsLevel& variance) {
+  const InsLevel before = model.power_up;
+  for (Index i = 0; i < model.layout.sensors; ++i) {
+    // What persists of segments that flex and axes that stray looks like a bias that has changed.
+    const InsLevel& persistent = model.sensors[static_cast<std::size_t>(i)].persistent;
+    widen_biases(model.parameters, i,
+                 {std::max(variance.rate, std::min(before.rate, square(persistent.rate))) - before.rate,
+                  std::max(variance.force, std::min(before.force, square(persistent.force))) - before.force});
+  }
+  model.power_up = variance;
+  return model;
 }
 
 std::vector<ModelPosition> model_positions(const TrackingModel& tracking, const FilterModel& model) {

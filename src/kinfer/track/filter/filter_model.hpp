@@ -60,6 +60,7 @@ struct FilterModel {
   double gravity = standard_gravity;
   InsLevel bias{};       ///< standard deviation of a bias, as its grade has it
   InsLevel bias_walk{};  ///< variance per second of a bias' random walk
+  InsLevel power_up{};   ///< variance of a bias' change from one power-up to the next
   MatrixXd parameters;   ///< covariance of sensors' and geometry's states when tracking begins
 
   /// Whether a body's spherical joint stands for a loose revolute one.
@@ -67,6 +68,10 @@ struct FilterModel {
 };
 
 FilterModel filter_model(const TrackingModel& model);
+
+/// The same with this variance of the change of biases since the identification, beside their instability and what the
+/// model is persistently off by.
+FilterModel with_power_up(FilterModel model, const InsLevel& variance);
 
 /// Where a joint position of the filter stands in the tracking model: indices into its q and its joints; −1: none.
 struct ModelPosition {

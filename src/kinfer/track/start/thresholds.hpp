@@ -2,6 +2,8 @@
 // Settings of the start, with the data that they were set on.
 #pragma once
 
+#include <array>
+
 namespace kinfer::track {
 
 inline constexpr double start_length = 0.25;       ///< [s] of rows that determine the posture
@@ -18,6 +20,12 @@ inline constexpr double start_rate_sd = 0.05;  ///< [rad/s] of velocities by gyr
 inline constexpr double start_prismatic_speed = 0.05;  ///< [m/s] of a prismatic joint
 inline constexpr double start_heading_sd = 0.03;       ///< [rad] of a joint that is loose or between slack mounts
 inline constexpr double start_velocity_sd = 0.3;       ///< [m/s] of the base
+/// [rad] Of positions and attitude while the rows that they were read from are weighed: far beyond what biases make.
+inline constexpr double weighed_start_sd = 0.1;
+/// Of the change of biases from one power-up to the next. That gyroscopes change otherwise than accelerometers (they
+/// are zeroed at each power-up, say) is so much less likely.
+inline constexpr std::array power_up_shares{0.0, 0.2, 1.0};
+inline constexpr double unlike_changes = 0.3;
 
 inline constexpr int start_places = 18;  ///< of an angle that gravity does not determine
 /// Updates that only settle velocities and accelerations: their evidence depends on how little was known of these.
