@@ -382,14 +382,23 @@ void Tracker::examine_places(const BlockMeasurement& block) {
   place_fits_.add(*grid_, block.time, block.length);
   const Suspect common = place_fits_.common(*grid_);
   if (common == Suspect{}) return;
+  seek_place_of_disagreement();
+  if (grid_->motion() != JointMotion::prismatic) return forget_places();
   grid_.reset();
   name({.suspect = unless_turned_beside(common)});
+}
+
+/// Where sensors disagree, a joint that stands where it does by chance is likelier than a sensor that moved. On a base
+/// that may move they need not show yet that it does.
+void Tracker::seek_place_of_disagreement() {
+  if (filter_.state().time < suspicion_from_) return;
+  begin_grid(filter_.state().base == BaseMode::moving ? 0.0 : motion_suspicion);
 }
 
 /// What disagrees most is left out, as if it had never been believed, and what agrees again is taken in.
 void Tracker::examine_fit() {
   const Suspect worst = fit_.worst(filter_);
-  if (worst != Suspect{} && filter_.state().time >= suspicion_from_) begin_grid(motion_suspicion);
+  if (worst != Suspect{}) seek_place_of_disagreement();
   if (grid_) return forget_places();  // a position that motion begins to show is where it was supposed to be by chance
   name({.suspect = unless_turned_beside(worst)});
   const Suspect back = fit_.recovered(filter_, [this](std::size_t s) { return mounts_.may_return(s); });

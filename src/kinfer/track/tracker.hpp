@@ -81,6 +81,7 @@ class Tracker {
   void doubt(std::size_t joint);
   void name(const LikelyCause& cause);
   void examine_sudden_change(double time);
+  void seek_place_of_disagreement();
   void examine_fit();
   Suspect unless_turned_beside(Suspect suspect) const;
   void examine_places(const BlockMeasurement& block);
