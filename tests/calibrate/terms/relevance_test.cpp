@@ -155,6 +155,34 @@ TEST(Relevance, TheGroupWithAnEffectIsKeptAndTheOthersVanish) {
   EXPECT_LE(wrong, 3);
 }
 
+/// Three joints of one term, of which the second certainly has it: f² of another is its probability times its square.
+TEST(Relevance, AJointsSizeIsTheRootOfItsExpectedSquare) {
+  int between = 0;
+  for (int seed = 1; seed <= 10; ++seed) {
+    LinearModel model = linear_model(40, 1.0, seed);
+    for (RelevanceGroup& group : model.groups) group.family = 0;
+    model.y += 0.2 * model.terms.col(0);
+    const auto weights = weigh_groups(known_noise(model), model.groups);
+    const double centre = weights[1].factor;
+    if (weights[2].factor > 0.0) continue;  // so that the first is beside the second alone
+    const double none = dense_log_likelihood(model, {0.0, centre, 0.0});
+    double sum = 0.0, most = 0.0, likeliest = 0.0;
+    constexpr double step = 0.01;
+    for (double log_f = std::log(1e-3); log_f < 0.0; log_f += step) {
+      const double z = log_f - std::log(centre), f = std::exp(log_f),
+                   value = std::exp(dense_log_likelihood(model, {f, centre, 0.0}) - none - 0.5 * z * z) /
+                           std::sqrt(2.0 * std::numbers::pi);
+      sum += step * value;
+      if (value > most) most = value, likeliest = f;
+    }
+    const double probability = sum / (1.0 + sum), expected = std::sqrt(probability) * likeliest;
+    if (probability > 0.8 || std::abs(probability - 0.1) < 0.02) continue;  // above, it moves the centre
+    EXPECT_NEAR(weights[0].factor, probability > 0.1 ? expected : 0.0, 0.15 * expected) << seed;
+    between += probability > 0.1;
+  }
+  EXPECT_GE(between, 2);
+}
+
 TEST(Relevance, WithoutAnyEffectHardlyAnyGroupIsKept) {
   int kept = 0;
   for (int seed = 1; seed <= 40; ++seed) {

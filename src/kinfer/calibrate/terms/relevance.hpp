@@ -32,7 +32,7 @@ struct RelevanceGroup {
 };
 
 struct GroupRelevance {
-  double factor = 0.0;  ///< f_g, standard deviation in units of the stated prior; 0: the data do not support the group
+  double factor = 0.0;             ///< f_g, standard deviation in units of the stated prior; 0: left out
   double log_evidence_gain = 0.0;  ///< of the group, given the others; negative: the data speak against it
 };
 
@@ -42,7 +42,8 @@ struct TermsAtNoise {
   double log_likelihood = 0.0;  ///< log p(data, this noise level | all terms 0), but for a constant
 };
 
-/// The factors that maximise the marginal likelihood, one per group; over all noise levels together.
+/// The factors that maximise the marginal likelihood, one per group; over all noise levels together. Of a term that the
+/// data support, each joint's is the root of its expected square, over whether the joint has the term or not.
 std::vector<GroupRelevance> weigh_groups(const std::vector<TermsAtNoise>& levels,
                                          const std::vector<RelevanceGroup>& groups);
 
