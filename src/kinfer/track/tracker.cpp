@@ -7,6 +7,7 @@
 #include "kinfer/base/expect.hpp"
 #include "kinfer/track/faults/thresholds.hpp"
 #include "kinfer/track/filter/thresholds.hpp"
+#include "kinfer/track/readout/readout.hpp"
 #include "kinfer/track/start/thresholds.hpp"
 
 namespace kinfer::track {

@@ -44,7 +44,7 @@ class UpdateSystem {
   /// W becomes Y.
   void divide();
   /// x becomes x L⁻ᵀ.
-  void whiten(MatrixRef x) const { solve_right(root_.topLeftCorner(rows_, rows_), x); }
+  void whiten(const MatrixRef& x) const { solve_right(root_.topLeftCorner(rows_, rows_), x); }
   /// Subtracts what errors of the state (a row each) change of the prediction; rows that are not measured have none.
   void subtract_predicted(const ChainMeasurement& measurement, const MatrixXd& errors, MatrixRef from) const;
 
