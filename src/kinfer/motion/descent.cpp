@@ -164,7 +164,7 @@ void Descent::approach(const ReachTask& task, const VectorXd& preferred, VectorX
     }
   }
   Attempt end = run(task, q, steps);
-  q = end.converged ? std::move(end.q) : start;
+  q = end.converged ? end.q : start;
 }
 
 /// `wanted` without the part that moves the tool; 0 where that is not to be separated.

@@ -118,7 +118,7 @@ inline V sum_of_harmonics(const JointDisplacement& joint, const double* item) {
   }
   const SinCos<V> turn = wave[at_once];
   V sums[at_once];
-  for (int k = 0; k < at_once; ++k) sums[k] = broadcast<V>(0.0);
+  for (V& sum : sums) sum = broadcast<V>(0.0);
   int order = 0;
   for (; order + at_once <= joint.harmonics; order += at_once) {
     for (int k = 0; k < at_once; ++k) {

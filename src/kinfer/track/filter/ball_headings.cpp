@@ -2,6 +2,7 @@
 #include "kinfer/track/filter/ball_headings.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/base/square.hpp"
