@@ -12,19 +12,9 @@ namespace {
 
 using Rows = std::span<const BlockMeasurement>;
 
-/// ln of the likelihood; the filter runs through the rows.
-double run(ChainFilter& filter, Rows rows) {
-  double sum = 0.0;
-  for (const BlockMeasurement& block : rows) {
-    filter.predict(block.time);
-    filter.update(block);
-    sum += filter.innovations().log_likelihood;
-  }
-  return sum;
-}
-
+/// ln of the likelihood.
 double log_likelihood(ChainFilter filter, Rows rows) {
-  return run(filter, rows);
+  return filter.run(rows);
 }
 
 ChainFilter doubting(ChainFilter filter, std::size_t joint) {
@@ -41,9 +31,9 @@ double log_likelihood_if_doubted(const ChainFilter& filter, Rows rows, std::size
 double lasting_log_odds(ChainFilter filter, Rows rows, std::size_t joint) {
   ChainFilter doubts = doubting(filter, joint);
   const std::size_t first = rows.size() - std::min(rows.size(), lasting_blocks);
-  run(filter, rows.first(first));
-  run(doubts, rows.first(first));
-  return run(doubts, rows.subspan(first)) - run(filter, rows.subspan(first));
+  filter.run(rows.first(first));
+  doubts.run(rows.first(first));
+  return doubts.run(rows.subspan(first)) - filter.run(rows.subspan(first));
 }
 
 /// The mounting turned at some time within them: its turn is a random walk.
@@ -52,7 +42,7 @@ double log_likelihood_if_turning(ChainFilter filter, Rows rows, std::size_t sens
   double sum = 0.0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     loosen_mount(filter, sensor, walk);
-    sum += run(filter, rows.subspan(i, 1));
+    sum += filter.run(rows.subspan(i, 1));
   }
   return sum;
 }
@@ -60,7 +50,7 @@ double log_likelihood_if_turning(ChainFilter filter, Rows rows, std::size_t sens
 /// It turned before the first of them.
 double log_likelihood_if_turned(ChainFilter filter, Rows rows, std::size_t sensor) {
   loosen_mount(filter, sensor, square(turned_mount_sd));
-  return run(filter, rows);
+  return filter.run(rows);
 }
 
 /// Those on both sides of it.
@@ -92,7 +82,7 @@ LikelyCause likeliest_turn(ChainFilter filter, Rows rows, std::size_t turning, d
       if (log_odds > cause.log_odds) cause = {{.sensor = static_cast<int>(s)}, log_odds};
     }
     const std::size_t step = std::min(turning, turn_step);
-    sound += run(filter, rows.first(step));
+    sound += filter.run(rows.first(step));
     rows = rows.subspan(step);
     turning -= step;
   }
@@ -127,7 +117,7 @@ std::optional<std::size_t> turned_beside(const ChainFilter& before, Rows rows, s
 LikelyCause likeliest_cause(const ChainFilter& before, Rows rows, const SuddenChange& change) {
   ChainFilter filter = before;
   const std::size_t sound = rows_until(rows, change.from);
-  run(filter, rows.first(sound));
+  filter.run(rows.first(sound));
   rows = rows.subspan(sound);
   const auto may_have_turned = [&](std::size_t s) { return filter.uses_sensor(s) && change.may_have_turned(s); };
   const double none = log_likelihood(filter, rows);

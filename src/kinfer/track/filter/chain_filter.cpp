@@ -373,6 +373,16 @@ void ChainFilter::add_what_means_miss(double dt, const BlockMeasurement& block) 
   retract(*model_, error_, state_);
 }
 
+double ChainFilter::run(std::span<const BlockMeasurement> rows) {
+  double log_likelihood = 0.0;
+  for (const BlockMeasurement& block : rows) {
+    predict(block.time);
+    update(block);
+    log_likelihood += innovations_.log_likelihood;
+  }
+  return log_likelihood;
+}
+
 void ChainFilter::update(const BlockMeasurement& block) {
   KINFER_EXPECT(block.sensors.size() == is_used_.size());
   const double dt = time_since_update();

@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "kinfer/track/filter/ball_headings.hpp"
 #include "kinfer/track/filter/constant_faults.hpp"
@@ -43,6 +44,8 @@ class ChainFilter {
 
   void predict(double time);
   void update(const BlockMeasurement& block);
+  /// Both for each of these rows; ln of their likelihood.
+  double run(std::span<const BlockMeasurement> rows);
 
   /// One scalar measurement h x = value of the estimated states, given by the indices of h that are not zero. Its noise
   /// may be part of the error of one state already, which is none of h.

@@ -30,13 +30,7 @@ double log_likelihood(FilterModel model, const ChainFilter& filter, const Initia
   ChainFilter trial(std::make_shared<FilterModel>(std::move(model)));
   trial.judge_as(filter);
   start_in(posture, trial);
-  double sum = 0.0;
-  for (const BlockMeasurement& block : rows) {
-    trial.predict(block.time);
-    trial.update(block);
-    sum += trial.innovations().log_likelihood;
-  }
-  return sum;
+  return trial.run(rows);
 }
 
 /// Its variance, and its weight: ln of prior and likelihood.

@@ -32,13 +32,8 @@ struct SettledStart {
 double run_and_move(InitialPosture& start, ChainFilter trial, std::span<const BlockMeasurement> first_rows,
                     const std::vector<Index>& positions) {
   start_in(start, trial);
-  double log_likelihood = 0.0;
-  for (const BlockMeasurement& block : first_rows) {
-    if (block.time <= trial.state().time) continue;
-    trial.predict(block.time);
-    trial.update(block);
-    log_likelihood += trial.innovations().log_likelihood;
-  }
+  while (!first_rows.empty() && first_rows.front().time <= trial.state().time) first_rows = first_rows.subspan(1);
+  const double log_likelihood = trial.run(first_rows);
   const double since = trial.state().time - start.state.time;
   for (const Index at : positions) {
     const auto now = trial.state().joints.segment<position_states>(position_states * at);
