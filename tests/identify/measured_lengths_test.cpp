@@ -9,6 +9,7 @@
 
 #include "kinfer/identify/pipeline.hpp"
 #include "kinfer/io/recording/ins_csv.hpp"
+#include "repeats.hpp"
 
 namespace kinfer {
 using namespace identify;
@@ -24,7 +25,7 @@ TEST(MeasuredLengths, OfAPendulumAreInsideTheirIntervals) {
   const char* data = std::getenv("KINFER_DATA");
   if (!data) GTEST_SKIP() << "KINFER_DATA is not set";
   constexpr double hinge_to_hinge = 0.519;  // [m] by optical markers, both segments
-  for (const char* test : {"test1", "test2", "test3"}) {
+  for (const char* test : test::repeats({"test1", "test2", "test3"})) {
     const Identification found = found_in(std::string(data) + "/pendulum_ins/" + test + ".csv", "S3");
     ASSERT_EQ(found.links.size(), 2u) << test;
     for (const LinkEstimate& link : found.links) {
@@ -45,7 +46,7 @@ double foot(const Vec3& axis, const Vec3& point, const Vec3& other_axis, const V
 TEST(MeasuredLengths, OfASlowArmThatVibratesAreInsideTheirIntervals) {
   const char* data = std::getenv("KINFER_DATA");
   if (!data) GTEST_SKIP() << "KINFER_DATA is not set";
-  for (const char* trial : {"trial1", "trial3"}) {
+  for (const char* trial : test::repeats({"trial1", "trial3"})) {
     const Identification found = found_in(std::string(data) + "/kuka_iiwa_ins/" + trial + "_imu.csv", "D");
     ASSERT_EQ(found.joints.size(), 5u) << trial;  // joints 2 to 6, parents first
     for (const std::size_t middle : {1u, 3u}) {

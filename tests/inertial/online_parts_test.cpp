@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "kinfer/base/constants.hpp"
 #include "kinfer/inertial/filters/kinfer_smoother.hpp"
 #include "kinfer/inertial/filters/magnetic_reference.hpp"
 #include "kinfer/inertial/filters/paper_ekf.hpp"

@@ -124,7 +124,7 @@ TEST(LogDiagnosis, AllGyroscopesReversedMayAsWellBeLeftHandedSensors) {
 }
 
 TEST(LogDiagnosis, ASensorThatOnlySlewsSharesTheReversedGyroscopesOfTheOthers) {
-  for (const char* machine : {"excavator", "robot6"}) {
+  for (const char* machine : test::repeats({"excavator", "robot6"})) {
     InsRecording log = test::driven_machine(machine, 8).recording;
     for (InsSensor& s : log.sensors) negate(s.angular_velocity), flag_faults(s);
     const auto kinds = kinds_of(diagnose_log(log, 2));

@@ -4,6 +4,7 @@
 #include "identify/driven_machine.hpp"
 #include "kinfer/identify/joints/thresholds.hpp"
 #include "kinfer/identify/structure/ordered_motion.hpp"
+#include "repeats.hpp"
 
 namespace kinfer {
 using namespace identify;
@@ -16,7 +17,7 @@ const LinkEvidence& search_of(const Identification& found, const std::string& se
 }
 
 TEST(Certificate, TheWrittenJointsPredictTheHeldOutRowsAsWellAsTheSearchesOwn) {
-  for (const char* machine : {"excavator-general", "robot6"}) {
+  for (const char* machine : test::repeats({"excavator-general", "robot6"})) {
     const Identification found = identified(test::driven_machine(machine, 4).recording);
     EXPECT_FALSE(found.starts_from_search);
     for (const JointEstimate& joint : found.joints) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "identify/driven_machine.hpp"
+#include "repeats.hpp"
 
 namespace kinfer {
 using namespace identify;
@@ -76,7 +77,7 @@ TEST(InstrumentScales, AClockThatIsFastLeavesTheLengthsUncertain) {
 }
 
 TEST(InstrumentScales, AClockOfAnyRateIsNamed) {
-  for (const double rate : {0.1, 0.25, 2.0}) {
+  for (const double rate : test::repeats({0.1, 0.25, 2.0})) {
     DrivenMachine drive = test::driven_machine("crane", 4);
     for (InsLogger& logger : drive.recording.loggers)
       for (double& time : logger.time) time *= rate;
@@ -90,7 +91,7 @@ TEST(InstrumentScales, AClockOfAnyRateIsNamed) {
 }
 
 TEST(InstrumentScales, AccelerometersThatAllReadTooMuchAreCorrectedByGravity) {
-  for (const float factor : {0.94f, 1.0194f, 1.1f}) {
+  for (const float factor : test::repeats({0.94f, 1.0194f, 1.1f})) {
     DrivenMachine drive = test::driven_machine("crane", 4);
     for (InsSensor& sensor : drive.recording.sensors) multiply(sensor.acceleration, factor);
     const Identification found = test::identified(drive.recording);

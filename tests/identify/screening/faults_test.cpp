@@ -67,7 +67,7 @@ TEST(Remount, TheMoreInformativeSideIsUsedAndReported) {
 
 TEST(Remount, IsNotReportedWhereNoSensorWasMoved) {
   for (const std::string& name : machine_names())
-    for (const Script script : {Script::standard, Script::gentle}) {
+    for (const Script script : test::repeats({Script::standard, Script::gentle})) {
       const auto ordered = order_segments(driven_machine(name, 4, script).recording, {}, {}, 0);
       ASSERT_TRUE(ordered);
       EXPECT_FALSE(find_remount(*ordered, 0)) << name;

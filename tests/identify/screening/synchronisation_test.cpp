@@ -6,6 +6,7 @@
 #include "identify/driven_machine.hpp"
 #include "kinfer/simulate/log_faults.hpp"
 #include "kinfer/words/identification/verdict.hpp"
+#include "repeats.hpp"
 
 namespace kinfer {
 using namespace identify;
@@ -45,7 +46,7 @@ TEST(Synchronisation, OffsetAndDriftingLoggerClocksCostNoAccuracy) {
 TEST(Synchronisation, TheClockThatTheOthersDisagreeWithIsTheOddOne) {
   const DrivenMachine drive = driven_machine("excavator-general", 1);
   const InsRecording apart = with_clock_fault(drive.recording, {.sensor = 3, .offset = 0.02, .drift = 1e-3});
-  for (const bool is_first : {false, true}) {
+  for (const bool is_first : test::repeats({true, false})) {
     InsRecording log = apart;
     if (is_first) {
       std::swap(log.loggers[0], log.loggers[log.sensors[3].logger]);
@@ -72,7 +73,7 @@ TEST(Synchronisation, ADelayedSensorInTheSameFileIsFoundToo) {
 
 TEST(Synchronisation, LeavesMachinesWhoseClocksAgreeUnchanged) {
   for (const std::string& name : machine_names())
-    for (const Script script : {Script::together, Script::gentle}) {
+    for (const Script script : test::repeats({Script::together, Script::gentle})) {
       const Synchronisation clock = synchronise_sensors(driven_machine(name, 4, script).recording, {}, 0);
       EXPECT_EQ(clock.clock_treatment, ClockTreatment::checked) << name;
       EXPECT_TRUE(std::ranges::all_of(clock.corrections, &ClockCorrection::is_none)) << name;

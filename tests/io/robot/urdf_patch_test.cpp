@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/io/robot/patch/urdf_patch.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "kinfer/geometry/random.hpp"
 #include "kinfer/io/robot/patch/joint_origins_yaml.hpp"

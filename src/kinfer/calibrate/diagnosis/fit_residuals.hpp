@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "kinfer/calibrate/diagnosis/diagnosis_state.hpp"
+#include "kinfer/evidence/calibration/fit_errors.hpp"
 
 namespace kinfer::calibrate {
 

@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "kinfer/base/result.hpp"
 #include "kinfer/calibrate/problem/task.hpp"
 
 namespace kinfer::calibrate {

@@ -6,6 +6,7 @@
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/calibrate/functions/harmonic_sum.hpp"
+#include "kinfer/kinematics/forward.hpp"
 
 namespace kinfer::calibrate {
 

@@ -6,7 +6,7 @@
 // of its tilt shows as a velocity that grows.
 #pragma once
 
-#include "kinfer/linalg/types.hpp"
+#include "kinfer/geometry/rotation.hpp"
 
 namespace kinfer::track {
 

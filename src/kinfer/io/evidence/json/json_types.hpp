@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "kinfer/geometry/rotation.hpp"
 #include "kinfer/linalg/types.hpp"
 
 namespace kinfer::evidence_json {
