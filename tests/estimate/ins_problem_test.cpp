@@ -8,6 +8,7 @@
 
 #include "kinfer/base/rng.hpp"
 #include "kinfer/estimate/continuous/model/bias_process.hpp"
+#include "kinfer/estimate/continuous/model/retraction.hpp"
 #include "kinfer/estimate/continuous/solver/fact_residuals.hpp"
 #include "kinfer/estimate/continuous/solver/spline_prior.hpp"
 #include "kinfer/linalg/decompositions.hpp"

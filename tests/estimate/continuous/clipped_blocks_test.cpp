@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "kinfer/base/rng.hpp"
+#include "kinfer/estimate/continuous/model/retraction.hpp"
 #include "kinfer/estimate/continuous/solver/block_residual.hpp"
 #include "kinfer/estimate/continuous/solver/linearisation.hpp"
 #include "support/random_bodies.hpp"

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "kinfer/base/rng.hpp"
+#include "kinfer/estimate/continuous/model/retraction.hpp"
 #include "support/differences.hpp"
 #include "support/random_bodies.hpp"
 

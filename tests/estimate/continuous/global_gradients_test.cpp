@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "kinfer/base/rng.hpp"
+#include "kinfer/estimate/continuous/model/retraction.hpp"
 #include "kinfer/estimate/continuous/solver/linearisation.hpp"
 #include "support/random_bodies.hpp"
 

@@ -95,14 +95,14 @@ void leave_out(InsFacts& facts, const Suspect& suspect) {
 }
 
 /// The fit without one of the facts.
-struct Candidate {
+struct WrongFactCandidate {
   Suspect suspect;
   double log_odds = 0.0;
   RefinementFit fit;
 };
 
-Candidate without(const RefinementTask& task, const RefinementFit& fitted, const Suspect& suspect) {
-  Candidate candidate{
+WrongFactCandidate without(const RefinementTask& task, const RefinementFit& fitted, const Suspect& suspect) {
+  WrongFactCandidate candidate{
       suspect, 0.0, refit_with(task, fitted, [&](RefinementSetup& setup) { leave_out(setup.problem.facts, suspect); })};
   const auto likelihood = [](const RefinementFit& fit) {
     return negative_log_likelihood(fit.setup.problem, fit.fit.cost);
@@ -112,10 +112,10 @@ Candidate without(const RefinementTask& task, const RefinementFit& fitted, const
 }
 
 /// Most probably wrong first.
-std::vector<Candidate> candidates(const RefinementTask& task, const RefinementFit& fitted) {
-  std::vector<Candidate> all;
+std::vector<WrongFactCandidate> candidates(const RefinementTask& task, const RefinementFit& fitted) {
+  std::vector<WrongFactCandidate> all;
   for (const Suspect& suspect : suspects(fitted)) all.push_back(without(task, fitted, suspect));
-  std::ranges::sort(all, std::greater{}, &Candidate::log_odds);
+  std::ranges::sort(all, std::greater{}, &WrongFactCandidate::log_odds);
   return all;
 }
 
@@ -131,7 +131,7 @@ struct FactNumbers {
 };
 
 /// [m] of a fact that was left out from what the others say.
-double distance_from_others(const InsFacts& facts, const Candidate& candidate) {
+double distance_from_others(const InsFacts& facts, const WrongFactCandidate& candidate) {
   RefinementSetup setup = candidate.fit.setup;  // with that fact alone
   InsFacts& alone = setup.problem.facts;
   const auto& [kind, index, ratio, gain] = candidate.suspect;
@@ -145,7 +145,7 @@ double distance_from_others(const InsFacts& facts, const Candidate& candidate) {
   return rows.front().left.norm() * (is_tape ? facts.tapes[index].sd : facts.surveyed[index].sd);
 }
 
-Finding finding_about(const InsFacts& facts, const Candidate& wrong, int number, bool is_clear) {
+Finding finding_about(const InsFacts& facts, const WrongFactCandidate& wrong, int number, bool is_clear) {
   const bool is_tape = wrong.suspect.kind == FactKind::tape;
   const std::size_t index = wrong.suspect.index;
   return {.kind = FindingKind::gross_outliers,
@@ -163,9 +163,9 @@ std::vector<Finding> leave_out_wrong_facts(InsFacts& facts, const RefinementTask
   std::vector<Finding> findings;
   FactNumbers numbers(facts);
   for (;;) {
-    std::vector<Candidate> all = candidates(task, fitted);
+    std::vector<WrongFactCandidate> all = candidates(task, fitted);
     if (all.empty() || all[0].log_odds < clear_fact_log_odds) return findings;
-    Candidate& wrong = all[0];
+    WrongFactCandidate& wrong = all[0];
     const bool is_clear = all.size() < 2 || wrong.log_odds - all[1].log_odds > clear_fact_log_odds;
     std::vector<int>& of_kind = numbers.of(wrong.suspect.kind);
     findings.push_back(finding_about(facts, wrong, of_kind[wrong.suspect.index], is_clear));

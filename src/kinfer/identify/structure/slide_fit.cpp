@@ -164,13 +164,13 @@ Vec3 next_axis(const std::vector<Window>& windows, const WindowFit& fit, const V
   return solution && solution->head<3>().norm() > 0.0 ? Vec3(solution->head<3>().normalized()) : axis;
 }
 
-struct Candidate {
+struct SlideCandidate {
   Vec3 axis;
   WindowFit fit;
 };
 
 /// Each step halves the error of the axis.
-void refine(Candidate& candidate, const std::vector<Window>& windows, double period, int steps) {
+void refine(SlideCandidate& candidate, const std::vector<Window>& windows, double period, int steps) {
   constexpr double settled = 1e-3;  // [rad]
   for (int k = 0; k < steps; ++k) {
     const Vec3 axis = next_axis(windows, candidate.fit, candidate.axis, period);
@@ -197,9 +197,9 @@ std::optional<SlideFit> fit_slide(const RecordedMotion& motion, const SegmentMot
   const auto windows = windows_of(motion, parent, child);
   if (windows.empty()) return std::nullopt;
   const Mat3 starts = starts_of(windows);
-  std::optional<Candidate> best;
+  std::optional<SlideCandidate> best;
   for (const Eigen::Index start : {2, 1, 0}) {
-    Candidate candidate{starts.col(start), fit_windows(windows, starts.col(start), motion.period)};
+    SlideCandidate candidate{starts.col(start), fit_windows(windows, starts.col(start), motion.period)};
     refine(candidate, windows, motion.period, first_steps);
     if (!best || candidate.fit.mean_square < best->fit.mean_square) best = std::move(candidate);
   }

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "kinfer/base/angle.hpp"
+#include "kinfer/base/square.hpp"
 #include "kinfer/track/start/thresholds.hpp"
 
 namespace kinfer::track {
@@ -64,7 +65,15 @@ SeenBody seen_body(const FilterModel& model, const BlockMeasurement& block, cons
 /// Standard deviations [rad] of the direction of a joint's axis in the parent and in the child.
 struct AxisSd {
   double in_parent = 0.0, in_child = 0.0;
+  double on_cone = 0.0;  ///< in the parent, along a cone whose angle is known: where nothing told the azimuth
 };
+
+/// [rad] The larger standard deviation of two, if the smaller one is a fraction of it; 0 otherwise.
+double sd_of_line(const Eigen::Matrix2d& covariance) {
+  const double half = 0.5 * covariance.trace(),
+               apart = std::sqrt(std::max(0.0, square(half) - covariance.determinant()));
+  return half - apart < square(cone_width) * (half + apart) ? std::sqrt(half + apart) : 0.0;
+}
 
 AxisSd axis_sd(const FilterModel& model, std::size_t b) {
   const InsBody& body = model.bodies[b];
@@ -79,20 +88,27 @@ AxisSd axis_sd(const FilterModel& model, std::size_t b) {
     return std::sqrt(variance);
   };
   AxisSd sd;
+  if (body.free_parent_rotation[0] && body.free_parent_rotation[1])
+    sd.on_cone = sd_of_line(model.parameters.block<2, 2>(at, at));
   sd.in_parent = next(body.free_parent_rotation);
   sd.in_child = next(body.free_child_rotation);
   return sd;
 }
 
+/// [m/s²] What gravity has across an axis by errors of the axis: by all, and by those along a cone.
+struct AcrossByAxis {
+  double all = 0.0, on_cone = 0.0;
+};
+
 /// What gravity tells of a position about an axis that has `lever` [m/s²] of it across. Motion makes a position that
 /// gravity shows uncertain; only at an upright axis it is unobservable.
-JointStart shown_by_gravity(double lever, double of_axis, const SeenBody& parent, const SeenBody& child) {
+JointStart shown_by_gravity(double lever, const AcrossByAxis& by_axis, const SeenBody& parent, const SeenBody& child) {
   lever = std::max(1e-3, lever);
-  const double sd = std::hypot(parent.force_sd, child.force_sd, of_axis) / lever,
-               rest_sd = std::hypot(parent.rest_sd, child.rest_sd, of_axis) / lever;
+  const double sd = std::hypot(parent.force_sd, child.force_sd, by_axis.all) / lever,
+               rest_sd = std::hypot(parent.rest_sd, child.rest_sd, by_axis.all) / lever;
   JointStart start;
   start.sd.x() = std::min(sd, max_observable_sd);
-  start.is_known[0] = rest_sd < max_observable_sd;
+  start.is_known[0] = rest_sd < max_observable_sd && by_axis.on_cone < max_cone_sd * lever;
   start.is_blurred = std::hypot(parent.force_sd, child.force_sd) > 2.0 * std::hypot(parent.rest_sd, child.rest_sd);
   start.is_rough = start.is_known[0] && sd > max_observable_sd;
   return start;
@@ -114,9 +130,9 @@ double log_odds_of_wrong_start(double apart, double sd) {
 JointStart revolute_start(const InsBody& body, const AxisSd& axis, const SeenBody& parent, const SeenBody& child,
                           const PositionGuess& guess, double time) {
   const Vec3 u = body.parent_R_axis.transpose() * parent.force, w = body.child_R_axis.transpose() * child.force;
-  const double lever = (body.parent_R_axis.transpose() * parent.gravity).head<2>().norm(),
-               of_axis = std::hypot(u.z() * axis.in_parent, w.z() * axis.in_child);
-  JointStart start = shown_by_gravity(lever, of_axis, parent, child);
+  const double lever = (body.parent_R_axis.transpose() * parent.gravity).head<2>().norm();
+  const AcrossByAxis by_axis{std::hypot(u.z() * axis.in_parent, w.z() * axis.in_child), std::abs(u.z()) * axis.on_cone};
+  JointStart start = shown_by_gravity(lever, by_axis, parent, child);
   const bool is_shown = start.is_known[0];
   const double by_gravity = angle_of(u) - angle_of(w), apart = wrap_to_pi(by_gravity - guess.value),
                odds = log_odds_of_wrong_start(apart, std::hypot(guess.sd, start.sd.x()));
@@ -265,7 +281,7 @@ class PostureStart {
                                         w.head<2>().norm()};
       for (std::size_t k = 0; k < 2; ++k) {
         JointStart& start = starts_[k == 0 ? b : c];
-        start = shown_by_gravity(lever[k], 0.0, before, own);
+        start = shown_by_gravity(lever[k], {}, before, own);
         start.position.x() = angles[k];
       }
       is_second_of_universal_ = static_cast<int>(c);

@@ -121,21 +121,6 @@ std::vector<bool> accelerating_dimensions(const InsProblem& problem, const InsBo
   return found;
 }
 
-/// `step`: 3 per unknown point, 3 per touched point, 10 per closure, then the surveyor's frame: translation and
-/// rotation.
-void change_facts(InsFactUnknowns& facts, ConstVectorRef step) {
-  Index at = 0;
-  for (auto* points : {&facts.places, &facts.touched})
-    for (Vec3& point : *points) point += step.segment<3>(at), at += 3;
-  for (InsBody& joint : facts.closures) {
-    joint = retract(joint, step.segment<closure_unknowns>(at));
-    at += closure_unknowns;
-  }
-  if (at == step.size()) return;
-  facts.surveyor.position += step.segment<3>(at);
-  facts.surveyor.rotation = facts.surveyor.rotation * exp_so3(step.segment<3>(at + 3));
-}
-
 }  // namespace
 
 InsLayout layout_of(const InsProblem& problem, const InsBodies& bodies) {
@@ -166,22 +151,6 @@ InsLayout layout_of(const InsProblem& problem, const InsBodies& bodies) {
   layout.closures = take(closure_unknowns * static_cast<Index>(facts.closures.size()));
   take(facts.surveyed.empty() ? 0 : 6);
   return layout;
-}
-
-InsUnknowns retract(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, const InsStep& step) {
-  const VectorXd& border = step.border;
-  InsUnknowns result = x;
-  result.spline_coefficients += step.spline_coefficients;
-  if (layout.bias_process > 0) result.bias_process += step.bias_process;
-  if (layout.root_force >= 0) result.root_force += border.segment<3>(layout.root_force);
-  for (std::size_t b = 0; b < x.bodies.size(); ++b)
-    result.bodies[b] = retract(x.bodies[b], border.segment(layout.body[b], x.bodies[b].unknowns()));
-  for (std::size_t s = 0; s < x.errors.size(); ++s)
-    each_error(problem, layout, result.errors, s, [&](Index at, Index size, double* value, double) {
-      for (Index i = 0; i < size; ++i) value[i] += border[at + i];
-    });
-  change_facts(result.facts, border.tail(layout.global_parameters - layout.facts));
-  return result;
 }
 
 GlobalParameterPrior global_parameter_prior(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x) {

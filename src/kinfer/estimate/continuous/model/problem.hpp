@@ -139,7 +139,6 @@ struct InsStep {
   VectorXd border;               ///< global parameters
   MatrixXd bias_process;         ///< unknowns x time segments
 };
-InsUnknowns retract(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, const InsStep& step);
 
 /// Prior on the global parameters: cost and normal equations (diagonal except for gravity and common scales).
 struct GlobalParameterPrior {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "kinfer/estimate/continuous/model/retraction.hpp"
 #include "kinfer/estimate/continuous/solver/noise_update.hpp"
 #include "kinfer/estimate/continuous/solver/normal_equations.hpp"
 
@@ -51,9 +52,8 @@ struct LevenbergMarquardt {
     fit.cost = std::move(point.cost);
   }
 
-  /// Non-monotone step: a slight increase of the cost is tolerated for a few further steps. In a curved valley, such as
-  /// that of an azimuth observed only by disturbed magnetometers, a long step climbs the wall and the next one returns
-  /// to the floor, where monotone steps would be very short.
+  /// Non-monotone step: a slight increase of the cost is tolerated for a few further steps. In a curved valley a long
+  /// step climbs the wall and the next one returns to the floor, where monotone steps would be very short.
   Point non_monotone_steps(Point trial, bool hold_global_parameters) const {
     for (int look = 0; look < non_monotone_limit && trial.cost.total >= fit.cost.total &&
                        trial.cost.total < tolerated_rise * fit.cost.total;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "kinfer/base/parallel.hpp"
+#include "kinfer/estimate/continuous/model/retraction.hpp"
 #include "kinfer/estimate/continuous/solver/linearisation.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/linalg/products.hpp"

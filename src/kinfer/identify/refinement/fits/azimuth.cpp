@@ -187,22 +187,27 @@ void search_azimuths(const RefinementTask& task, RefinementFit& fitted, const Ob
     options.iterations = iterations, options.reweighting_rounds = rounds, options.trajectory_iterations = 0;
     InsFit other = fit_ins(problem, start, options, observer);
     const double value = negative_log_likelihood(problem, other.cost);
-    if (value < lowest)
+    const bool is_better = value < lowest;
+    if (is_better)
       lowest = value, fitted.fit = std::move(other);
     else
       set_noise(problem, noise);
+    return is_better;
   };
+  std::optional<AzimuthTrial> trial;  // of the present fit
   for (std::size_t i = 0; i < weak.azimuths.size(); ++i) {
     if (weak.sd[static_cast<Index>(i)] > max_azimuth_prior_sd) continue;
     const InsUnknowns start = fitted.fit.unknowns;
-    const AzimuthTrial trial(task, fitted);
+    if (!trial) trial.emplace(task, fitted);
+    bool is_moved = false;
     for (int k = 1; k < circle_places; ++k) {
       const double angle = 2.0 * std::numbers::pi * k / circle_places;
-      if (!trial.is_possible(weak.azimuths[i], angle)) continue;
+      if (!trial->is_possible(weak.azimuths[i], angle)) continue;
       InsUnknowns x = start;
       rotate_azimuth(x.bodies, weak.azimuths[i], angle);
-      continue_from(x, circle_iterations, circle_rounds);
+      is_moved |= continue_from(x, circle_iterations, circle_rounds);
     }
+    if (is_moved) trial.reset();
   }
   if (lowest < before)
     continue_from(InsUnknowns(fitted.fit.unknowns), task.options.iterations, task.options.reweighting_rounds);

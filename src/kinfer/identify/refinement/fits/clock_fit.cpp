@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/estimate/continuous/model/retraction.hpp"
 #include "kinfer/estimate/continuous/solver/normal_equations.hpp"
 #include "kinfer/identify/refinement/fits/thresholds.hpp"
 
