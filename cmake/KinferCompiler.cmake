@@ -77,6 +77,8 @@ if(KINFER_SANITIZE)
   # they are used, by the processor and the address sanitizer: checks before each access take as long as everything else.
   add_compile_options(-fno-sanitize=pointer-overflow,null,alignment,object-size,vptr)
   if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    # No checks of what lies on the stack and provably stays within it; the default from clang 15 on.
+    add_compile_options("SHELL:-mllvm -asan-use-stack-safety=1")
     add_compile_options(-fsanitize-ignorelist=${CMAKE_CURRENT_LIST_DIR}/undefined_behaviour_ignorelist.txt)
   endif()
   add_link_options(-fsanitize=address,undefined)

@@ -17,7 +17,7 @@ using test::slurp;
 class IdentifyLibrary : public test::Program {};
 
 TEST_F(IdentifyLibrary, GivesTheBytesOfTheProgramsEvidence) {
-  ASSERT_EQ(kinfer("simulate excavator --out drive --grade noise --quiet").code, 0);
+  ASSERT_EQ(kinfer("simulate excavator --excitation together --out drive --grade noise --quiet").code, 0);
   ASSERT_EQ(kinfer("identify drive/imu.csv --engine bp --generations 3 --individuals 10 --links 2 --sensors "
                    "ins0,ins1,ins2 --seed 5 --out out --quiet")
                 .code,

@@ -18,7 +18,9 @@ using testing::HasSubstr;
 class Identify : public test::Program {
  protected:
   /// The excavator's log, short enough for a test; few generations of the search suffice.
-  void simulate() { ASSERT_EQ(kinfer("simulate excavator --out drive --grade noise --quiet").code, 0); }
+  void simulate() {
+    ASSERT_EQ(kinfer("simulate excavator --excitation together --out drive --grade noise --quiet").code, 0);
+  }
 };
 
 TEST_F(Identify, WritesTheChainAndItsEvidenceAndTheSameBytesForAnyNumberOfThreads) {
@@ -78,7 +80,7 @@ TEST_F(Identify, TheDefaultEngineReachesTheOptimumOfExhaustiveSearch) {
 
 TEST_F(Identify, AnUpdateSaysWhatChangedAndKeepsStructureAndNames) {
   simulate();
-  ASSERT_EQ(kinfer("simulate excavator --out later --seed 2 --grade noise --quiet").code, 0);
+  ASSERT_EQ(kinfer("simulate excavator --excitation together --out later --seed 2 --grade noise --quiet").code, 0);
   ASSERT_EQ(kinfer("identify drive/imu.csv --out machine --quiet").code, 0);
   const auto one = kinfer("identify --update machine later/imu.csv --out one --threads 1");
   ASSERT_EQ(one.code, 0) << one.err;

@@ -66,12 +66,12 @@ TEST_F(Language, ACalibrationWithFindingsThatIsNotUsableIsTheSameWithoutItsSente
 }
 
 TEST_F(Language, AnIdentificationIsTheSameWithoutItsSentences) {
-  ASSERT_EQ(kinfer("simulate excavator-general --out drive --seed 3").code, 0);
+  ASSERT_EQ(kinfer("simulate excavator-general --excitation together --out drive --seed 3").code, 0);
   compare("identify", "drive/imu.csv");
 }
 
 TEST_F(Language, AnIdentificationWithFindingsIsTheSameWithoutItsSentences) {
-  ASSERT_EQ(kinfer("simulate excavator --linkage --late ins2=40 --out drive --seed 6").code, 0);
+  ASSERT_EQ(kinfer("simulate excavator --linkage --late ins2=40 --excitation together --out drive --seed 6").code, 0);
   compare("identify", "drive/imu.csv");
 }
 

@@ -22,7 +22,7 @@ class Track : public test::Program {
  protected:
   /// drive/ and machine/: a log, and the machine identified from it.
   void identify(const std::string& more = "") const {
-    ASSERT_EQ(kinfer("simulate crane --out drive --grade noise --quiet").code, 0);
+    ASSERT_EQ(kinfer("simulate crane --excitation together --out drive --grade noise --quiet").code, 0);
     const Outcome run = kinfer("identify drive/imu.csv --out machine --quiet " + more);
     ASSERT_EQ(run.code, 0) << run.err;
   }

@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "kinfer/identify/pipeline.hpp"
+#include "kinfer/measurement/ins/ins_selection.hpp"
 #include "kinfer/simulate/ground_truth.hpp"
 #include "kinfer/simulate/ins_recording.hpp"
 #include "kinfer/words/findings/findings.hpp"
@@ -27,6 +29,25 @@ inline DrivenMachine driven_machine(const std::string& name, std::uint64_t seed,
   const MachineMotion motion = world.prescribe(drive_of(world.machine(), {.script = script}, seed), 100.0);
   return {simulate_recording(world.machine(), motion, *sensor_grade(grade), {}, Rng(seed)),
           machine_truth(world.machine(), motion)};
+}
+
+/// What the first sensors measure, the others not mounted.
+inline DrivenMachine first_sensors(DrivenMachine machine, std::size_t count) {
+  std::vector<std::size_t> kept(count);
+  std::iota(kept.begin(), kept.end(), 0U);
+  machine.recording = select_sensors(machine.recording, kept);
+  std::erase_if(machine.truth.joints, [&](const JointTruth& joint) {
+    return std::ranges::none_of(machine.recording.sensors,
+                                [&](const InsSensor& sensor) { return sensor.name == joint.child; });
+  });
+  return machine;
+}
+
+/// The base and the first joints of a general excavator: for what does not depend on how many joints there are, in a
+/// fraction of the time.
+inline DrivenMachine driven_arm(std::uint64_t seed, std::size_t sensors, Script script = Script::together,
+                                const MachineOptions& options = {.mounting = Mounting::arbitrary}) {
+  return first_sensors(driven_machine("excavator-general", seed, script, options), sensors);
 }
 
 /// Distance of an estimated axis line from the true one in the child's sensor, without unobservable directions [m].

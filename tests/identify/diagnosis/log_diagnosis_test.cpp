@@ -17,7 +17,7 @@ namespace kinfer::identify {
 namespace {
 
 const InsRecording& sound_log() {
-  static const InsRecording log = test::driven_machine("excavator-general", 5).recording;
+  static const InsRecording log = test::driven_arm(5, 5, Script::standard).recording;
   return log;
 }
 
@@ -308,7 +308,7 @@ TEST(LogDiagnosis, WhatCannotBeMendedIsRefusedByName) {
 }
 
 TEST(LogDiagnosis, AFaultThatWasCuredDoesNotSpoilTheChain) {
-  test::DrivenMachine drive = test::driven_machine("excavator-general", 5);
+  test::DrivenMachine drive = test::driven_arm(5, 4);
   for (InsSensor& s : drive.recording.sensors) transform(s.angular_velocity, 1.0 / degree, Mat3::Identity());
   negate(drive.recording.sensors[2].acceleration);
   for (InsSensor& s : drive.recording.sensors) flag_faults(s);

@@ -114,7 +114,7 @@ TEST(Forecast, TheAzimuthIsReportedSeparately) {
 /// An identified chain is driven in simulation and identified again.
 TEST(Forecast, AnIdentifiedChainIsSimulatedAndIdentifiedAgain) {
   const MujocoWorld world = test::world_of("excavator-general", {}, 3);
-  const MachineMotion motion = world.prescribe(test::drive_of(world.machine(), {}), 100.0);
+  const MachineMotion motion = world.prescribe(test::drive_of(world.machine(), {.script = Script::together}), 100.0);
   const auto found =
       identify_machine(simulate_recording(world.machine(), motion, *sensor_grade("noise"), {}, Rng(1)), {}, Rng(1));
   ASSERT_TRUE(found) << found.error().what;
@@ -122,7 +122,7 @@ TEST(Forecast, AnIdentifiedChainIsSimulatedAndIdentifiedAgain) {
   ASSERT_TRUE(machine) << machine.error().what;
   EXPECT_EQ(machine->sensors.size(), 6U);
   EXPECT_EQ(machine->sensors.front().name, "ins0");
-  const auto drive = make_drive(*machine, {}, Rng(2));
+  const auto drive = make_drive(*machine, {.script = Script::together}, Rng(2));
   const auto again = identify_machine(
       simulate_recording(*machine, prescribed_motion(*machine, *drive, 100.0), *sensor_grade("noise"), {}, Rng(2)), {},
       Rng(1));

@@ -96,7 +96,7 @@ TEST_P(HandedOverMachine, MovesAsTheChainDoes) {
 }
 
 TEST(TrackingModel, KnowsThatTheBaseMoved) {
-  const auto drive = test::driven_machine("excavator", 3, Script::standard, {.base = Base::rocking});
+  const auto drive = test::driven_arm(3, 4, Script::together, {.base = Base::rocking});
   const Identification found = test::identified(drive.recording);
   expect_agreement(found);
   EXPECT_TRUE(found.tracking->base.moved);
@@ -104,7 +104,7 @@ TEST(TrackingModel, KnowsThatTheBaseMoved) {
 }
 
 TEST(TrackingModel, KnowsThatZerosShareTheErrorsOfGeometryAndSensors) {
-  const auto drive = test::driven_machine("excavator", 3);
+  const auto drive = test::driven_arm(3, 4);
   const TrackingModel model = *test::identified(drive.recording).tracking;
   std::vector<Index> zeros, others;
   for (std::size_t i = 0; i < model.parameters.size(); ++i)

@@ -34,7 +34,7 @@ double worst_point_error(const Identification& found, const MachineTruth& truth)
 }
 
 TEST(InstrumentScales, OneGyroscopeThatReadsTooMuchIsCorrectedAndNamed) {
-  DrivenMachine drive = test::driven_machine("crane", 4);
+  DrivenMachine drive = test::driven_arm(4, 4);
   multiply(drive.recording.sensors[2].angular_velocity, 1.02f);
   const Identification found = test::identified(drive.recording);
   const Finding* finding = finding_of(found, FindingKind::instrument_scale);
@@ -65,7 +65,7 @@ TEST(InstrumentScales, WhichOfTwoTurnedInstrumentsIsRightStaysUncertain) {
 }
 
 TEST(InstrumentScales, AClockThatIsFastLeavesTheLengthsUncertain) {
-  DrivenMachine drive = test::driven_machine("crane", 4);
+  DrivenMachine drive = test::driven_arm(4, 4);
   for (InsLogger& logger : drive.recording.loggers)
     for (double& time : logger.time) time *= 1.05;
   const Identification found = test::identified(drive.recording);
@@ -92,7 +92,7 @@ TEST(InstrumentScales, AClockOfAnyRateIsNamed) {
 
 TEST(InstrumentScales, AccelerometersThatAllReadTooMuchAreCorrectedByGravity) {
   for (const float factor : test::repeats({0.94f, 1.0194f, 1.1f})) {
-    DrivenMachine drive = test::driven_machine("crane", 4);
+    DrivenMachine drive = test::driven_arm(4, 4);
     for (InsSensor& sensor : drive.recording.sensors) multiply(sensor.acceleration, factor);
     const Identification found = test::identified(drive.recording);
     const Finding* finding = finding_of(found, FindingKind::force_scale);
@@ -105,7 +105,7 @@ TEST(InstrumentScales, AccelerometersThatAllReadTooMuchAreCorrectedByGravity) {
 }
 
 TEST(InstrumentScales, SoundInstrumentsAreNotNamed) {
-  const DrivenMachine drive = test::driven_machine("crane", 4);
+  const DrivenMachine drive = test::driven_arm(4, 4);
   const Identification found = test::identified(drive.recording);
   EXPECT_FALSE(finding_of(found, FindingKind::instrument_scale));
   EXPECT_FALSE(finding_of(found, FindingKind::clock_rate));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "identify/driven_machine.hpp"
 #include "kinfer/identify/findings/unobservable.hpp"
 #include "kinfer/identify/structure/ordered_motion.hpp"
 #include "kinfer/simulate/ground_truth.hpp"
@@ -20,10 +21,12 @@ using testing::AllOf;
 using testing::Contains;
 using testing::Field;
 
-struct RefinedDrive {
-  InsRecording recording;
-  MachineTruth truth;
-};
+using RefinedDrive = test::DrivenMachine;
+
+/// The base and the first joints: for what does not depend on how many joints there are.
+RefinedDrive three_joints(RefinedDrive whole) {
+  return test::first_sensors(std::move(whole), 4);
+}
 
 RefinedDrive driven(const std::string& name, const MachineOptions& options, const SensorModel& grade,
                     const SensorFaults& trouble = {}) {
@@ -87,7 +90,8 @@ TEST(Refine, IdentifiesASimulatedMachineAsAccuratelyAsItsSensorsAllow) {
 }
 
 TEST(Refine, SensorsWithoutNoiseAreNoExceptions) {
-  const RefinedDrive drive = driven("excavator-general", {.mounting = Mounting::arbitrary}, SensorModel{});
+  const RefinedDrive drive =
+      three_joints(driven("excavator-general", {.mounting = Mounting::arbitrary}, SensorModel{}));
   const Refinement found = refined(drive);
   expect_close(found, drive.truth, 0.1e-3, 0.1e-3);
   for (const RefinedJoint& joint : found.joints) EXPECT_GT(std::ranges::min(joint.estimate.sd.axis_in_child), 0.0);
@@ -181,7 +185,7 @@ TEST(Refine, ReportsWhatAStationaryPlatformLeavesUnobservable) {
 }
 
 TEST(Refine, GivesTheSameBitsForAnyNumberOfThreads) {
-  const RefinedDrive drive = driven("excavator", {}, "noise");
+  const RefinedDrive drive = three_joints(driven("excavator", {}, "noise"));
   const Refinement one = refined(drive, 1);
   for (const int threads : {2, 7}) {
     const Refinement many = refined(drive, threads);

@@ -12,7 +12,7 @@ using namespace identify;
 namespace {
 
 const test::DrivenMachine& driven_excavator() {
-  static const test::DrivenMachine machine = test::driven_machine("excavator-general", 3);
+  static const test::DrivenMachine machine = test::driven_arm(3, 4);
   return machine;
 }
 

@@ -12,6 +12,7 @@ using namespace identify;
 namespace {
 
 constexpr std::uint64_t machine_seed = 4;
+constexpr std::size_t most_sensors = 5;  // all but the wrist of an arm
 
 /// A drive of the machine; `pin`: [m] by which the joint of `body` is farther out on its parent.
 test::DrivenMachine drive_of(const std::string& name, std::uint64_t seed, const std::string& body = "",
@@ -24,8 +25,9 @@ test::DrivenMachine drive_of(const std::string& name, std::uint64_t seed, const 
   }
   const MujocoWorld world = std::move(*MujocoWorld::load(mjcf));
   const MachineMotion motion = world.prescribe(test::drive_of(world.machine(), {}, seed), 100.0);
-  return {simulate_recording(world.machine(), motion, *sensor_grade("industrial"), {}, Rng(seed)),
-          machine_truth(world.machine(), motion)};
+  return test::first_sensors({simulate_recording(world.machine(), motion, *sensor_grade("industrial"), {}, Rng(seed)),
+                              machine_truth(world.machine(), motion)},
+                             most_sensors);
 }
 
 /// As if the sensor sat on its segment turned by an angle.
@@ -122,10 +124,10 @@ TEST(Update, NamesAMovedPinAndRefusesAnotherMachine) {
   ASSERT_TRUE(change.distance);
   EXPECT_NEAR(change.distance->value, 0.02, 3.0 * change.distance->sd);
 
-  const auto other = test::driven_machine("robot6", 77);
+  const auto other = test::first_sensors(test::driven_machine("robot6", 77), most_sensors);
   EXPECT_EQ(updated(known, other.recording).usability, Usability::do_not_use);
   const auto smaller =
-      identify_machine(test::driven_machine("crane", 3).recording, {.refine = {.known = known.tracking}}, Rng(1));
+      identify_machine(test::driven_arm(3, 4).recording, {.refine = {.known = known.tracking}}, Rng(1));
   ASSERT_FALSE(smaller);
   EXPECT_NE(smaller.error().what.find("no sensor"), std::string::npos) << smaller.error().what;
 }
