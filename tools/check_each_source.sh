@@ -37,6 +37,15 @@ check() {  # FILE OPTIONS: its complaint, if it has one
 }
 export -f check
 export WORK=$work
+
+# It sees what it is meant to see.
+example=$work/example.cpp
+options=$(head -1 "$work/sources" | cut -f2)
+echo 'kinfer::Vec3 v;' >"$example"
+[ -n "$(check "$example" "$options")" ] || { echo "not seen: a missing #include"; exit 1; }
+echo '#include "kinfer/geometry/rotation.hpp"' | cat - "$example" >"$work/whole.cpp"
+[ -z "$(check "$work/whole.cpp" "$options")" ] || { echo "refused: a source that is complete"; exit 1; }
+
 {
   cat "$work/sources"
   # A header whose source has its name is that source's first line.

@@ -198,15 +198,22 @@ TEST(Smoother, FindsTheBiasAndTheScaleOfTheGyro) {
   EXPECT_NEAR(found.scale.trace() / 3, 0.003, 0.0015) << "a prior of 0.002 pulls it towards zero";
 }
 
-/// A level carriage that turns about the vertical from the first row on, for 0.7 s at 0.042 rad/s, and rests from 28 s
-/// on.
-TEST(Smoother, AMomentOfSlowRotationIsNoBias) {
-  constexpr double period = 0.01, bias = 0.004;
+struct Moments {
+  double first = 0.0, second = 0.0;  ///< [rad/s]
+};
+
+/// Heading error of the smoother at the end of 30 s [rad]: a level carriage turns about the vertical from the first row
+/// on, meanwhile twice for 0.7 s at small rates, and rests from `rest` on.
+double heading_error_after(const Moments& moments, double bias, double rest) {
+  constexpr double period = 0.01;
   std::vector<double> time, heading{0.0};
   InsSensor sensor{.name = "carriage", .acceleration = {}, .angular_velocity = {}, .field = {}, .faults = {}};
   for (int k = 0; k < 3000; ++k) {
     const double t = period * k;
-    const double rate = t > 28.0 ? 0.0 : t > 6.0 && t < 6.7 ? 0.042 : 0.3 * std::sin(0.8 * t + 0.5);
+    const double rate = t > rest               ? 0.0
+                        : t > 6.0 && t < 6.7   ? moments.first
+                        : t > 15.0 && t < 15.7 ? moments.second
+                                               : 0.3 * std::sin(0.8 * t + 0.5);
     time.push_back(t);
     if (k > 0) heading.push_back(heading.back() + rate * period);
     for (int i = 0; i < 3; ++i) {
@@ -217,7 +224,21 @@ TEST(Smoother, AMomentOfSlowRotationIsNoBias) {
   sensor.faults.assign(time.size(), 0);
   const FilterOutput found = smooth_orientation(sensor, time);
   const Quat turned = found.world_q_sensor.front().conjugate() * found.world_q_sensor.back();
-  EXPECT_LT(std::abs(wrap_to_pi(quat_log(turned).z() - heading.back())), 1.0 * degree);
+  return std::abs(wrap_to_pi(quat_log(turned).z() - heading.back()));
+}
+
+TEST(Smoother, AMomentOfSlowRotationIsNoBias) {
+  EXPECT_LT(heading_error_after({0.042, 0.042}, 0.004, 28.0), 1.0 * degree);
+}
+
+TEST(Smoother, MomentsThatDifferAreNoBiasOfARecordingThatNeverRests) {
+  for (const double rate : {0.005, 0.01, 0.02})
+    EXPECT_LT(heading_error_after({rate, -rate}, 0.0, 40.0), 1.0 * degree) << rate;
+}
+
+TEST(Smoother, MomentsThatAgreeAreTheBiasOfARecordingWithoutRests) {
+  for (const double bias : {0.005, 0.01, 0.02})
+    EXPECT_LT(heading_error_after({0.0, 0.0}, bias, 40.0), 3.0 * degree) << bias;
 }
 
 TEST(PaperFilter, StartsWithTheFirstUsableSampleAndACopyGoesOnAlone) {

@@ -63,6 +63,7 @@ KinferFilter::KinferFilter(const KinferFilterOptions& options) : options_(option
   variance.segment<3>(bias_state).setConstant(square(options.bias_sd));
   covariance_.diagonal() = variance;
   estimate_.bias = options.bias;
+  rest_has_told_bias_ = options.bias_sd < options.moment_bias_sd;
 }
 
 void KinferFilter::start(const InsSample& sample) {
@@ -201,6 +202,7 @@ void KinferFilter::correct() {
   const bool still = at_rest() && rest_agrees_with_bias();
   correct_velocity(still, sum);
   if (still) correct_bias(sum);
+  rest_has_told_bias_ = rest_has_told_bias_ || (still && rest_.still >= min_rest_duration);
   if (period_.field_time > 0.0 && options_.magnetometer == MagnetometerUse::automatic) correct_heading(sum);
   estimate_ = corrected(estimate_, sum);
   const double gain = period_.elapsed / (options_.speed_memory + period_.elapsed);
@@ -227,12 +229,14 @@ void KinferFilter::correct_bias(KinferErrorState& sum) {
 }
 
 /// A slow steady rotation looks like rest, but its rate differs from the estimated bias. For a moment any motion does:
-/// then the rate has to be a usual bias.
+/// then a longer rest has to have told the bias, or it has to be known well enough, and the rate has to be near it.
 bool KinferFilter::rest_agrees_with_bias() const {
   if (rest_.still > options_.max_rest_rejection) return true;
   const Vec3 sd = covariance_.diagonal().segment<3>(bias_state).cwiseSqrt();
+  const bool is_moment = rest_.still < min_rest_duration;
+  if (is_moment && !rest_has_told_bias_ && sd.maxCoeff() > options_.moment_bias_sd) return false;
   const Vec3 distance = rest_.slow_rate.value - estimate_.bias;
-  const double gate = rest_.still < min_rest_duration ? options_.moment_gate : options_.rest_gate;
+  const double gate = is_moment ? options_.moment_gate : options_.rest_gate;
   return ((distance.cwiseAbs() - gate * sd).array() < options_.bias_gate).all();
 }
 

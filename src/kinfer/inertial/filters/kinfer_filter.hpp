@@ -57,7 +57,9 @@ struct KinferFilterOptions {
   double rest_gate = 5.0;              ///< [sd] of the bias
   double moment_gate = 2.0;            ///< [sd] likewise, of stillness shorter than `min_rest_duration`; larger takes
                                        ///< slow rotations for rests. Set on simulated drives that begin in motion
-  double max_rest_rejection = 10.0;    ///< [s] after which such a rest is accepted nevertheless
+  double moment_bias_sd = 1.0;       ///< [rad/s] of the bias beside which such stillness may be a rest before a longer
+                                     ///< rest has told it; larger: any
+  double max_rest_rejection = 10.0;  ///< [s] after which such a rest is accepted nevertheless
   RestOptions rest{};
   MagneticOptions magnetic{};
 };
@@ -139,7 +141,7 @@ class KinferFilter {
   Period period_;
   Vec3 last_rate_ = Vec3::Zero(), last_force_world_ = Vec3::Zero();
   Vec3 previous_mean_rate_ = Vec3::Zero();  ///< of the previous period
-  bool previous_was_still_ = false, started_ = false;
+  bool previous_was_still_ = false, started_ = false, rest_has_told_bias_ = false;
   double time_ = 0.0, typical_dt_ = 0.0, mean_square_speed_ = 0.0;
 };
 

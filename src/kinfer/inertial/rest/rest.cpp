@@ -24,10 +24,10 @@ void summarise(const InsSensor& sensor, std::span<const double> time, RestPeriod
   rest.acceleration_sd = (force2 / forces - rest.acceleration.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt();
 }
 
-/// Adds the rest without its margins, if enough of it is left.
-void add_rest(const InsSensor& sensor, std::span<const double> time, std::size_t first, std::size_t last,
+/// Adds the rest without its margins, if `listed` [s] of it are left.
+void add_rest(const InsSensor& sensor, std::span<const double> time, std::size_t first, std::size_t last, double listed,
               std::vector<RestPeriod>& found) {
-  while (first < last && time[first] < time[last] && time[last] - time[first] > min_rest_duration &&
+  while (first < last && time[first] < time[last] && time[last] - time[first] > listed &&
          sensor.faults[first] & (angular_velocity_missing | acceleration_missing))
     ++first;
   RestPeriod rest{.first_row = first, .last_row = last};
@@ -37,7 +37,7 @@ void add_rest(const InsSensor& sensor, std::span<const double> time, std::size_t
   if (rest.first_row >= rest.last_row) return;
   rest.begin = time[rest.first_row];
   rest.end = time[rest.last_row];
-  if (rest.seconds() < min_rest_duration) return;
+  if (rest.seconds() < listed) return;
   summarise(sensor, time, rest);
   found.push_back(rest);
 }
@@ -95,14 +95,14 @@ std::vector<RestPeriod> find_rests(const InsSensor& sensor, std::span<const doub
     if (dt > gap_factor * usual && dt > options.noise_time) detector = {};
     detector.add(s, std::min(dt, options.mean_time), options);
     const bool still = detector.at_rest(options);
-    if (resting && !still) add_rest(sensor, time, first, row - 1, found);
+    if (resting && !still) add_rest(sensor, time, first, row - 1, options.listed, found);
     if (!resting && still) {
       first = row;
       while (first > 0 && time[row] - time[first - 1] < detector.still) --first;
     }
     resting = still;
   }
-  if (resting) add_rest(sensor, time, first, time.size() - 1, found);
+  if (resting) add_rest(sensor, time, first, time.size() - 1, options.listed, found);
   return found;
 }
 

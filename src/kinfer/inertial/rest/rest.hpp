@@ -11,6 +11,9 @@
 
 namespace kinfer {
 
+/// [s] Shortest rest that is listed. Larger: fewer, better biases. Data: not recorded.
+inline constexpr double min_rest_duration = 1.0;
+
 struct RestOptions {
   double noise_time = 0.05;             ///< [s] averaging of noise; longer detects smaller motions, later
   double mean_time = 0.5;               ///< [s] averaging time of the reference mean
@@ -19,6 +22,7 @@ struct RestOptions {
   double max_gyro_bias = 0.052;         ///< [rad/s] (3 °/s) a larger steady rate is a rotation, not a bias ...
   double largest_gyro_bias = 0.175;     ///< [rad/s] (10 °/s) ... unless the sensor is never at rest otherwise
   double shortest = 0.25;               ///< [s] shorter stillness is not rest
+  double listed = min_rest_duration;    ///< [s] shorter rests, without their margins, are not listed
 };
 
 /// Online: one per sensor, copyable.
@@ -43,12 +47,10 @@ struct RestPeriod {
   double seconds() const { return end - begin; }
 };
 
-/// [s] Shortest rest that is listed. Larger: fewer, better biases. Data: not recorded.
-inline constexpr double min_rest_duration = 1.0;
 /// [s] Excluded at both ends of a rest, where the detector lags. Larger: cleaner and shorter rests. Data: not recorded.
 inline constexpr double rest_margin = 0.1;
 
-/// All rests of a sensor, without the margins.
+/// All rests of a sensor that last for `listed`, without the margins.
 std::vector<RestPeriod> rest_periods(const InsSensor& sensor, std::span<const double> time,
                                      const RestOptions& options = {});
 
