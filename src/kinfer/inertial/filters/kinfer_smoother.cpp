@@ -11,10 +11,10 @@ namespace {
 constexpr int states = kinfer_states, gyro_error_size = 12, first_gyro_error = 5;
 constexpr double bias_sd_by_rest = 2e-3;  // [rad/s] what a consumer gyroscope drifts by within minutes
 constexpr double known_bias_sd = 3e-3;    // [rad/s] of one that a rest told some minutes ago
-// Moments of stillness, without their margins: this long by themselves, and with rates that agree. Slow rotations of 28
-// simulated machines that never rest have rates that differ by 0.007 to 0.04 rad/s, or a single moment of 0.2 s; a
-// chain in hands that is held still once (DIODEM) has one of 0.45 to 0.65 s.
-constexpr double least_moment = 0.1, longest_lone_moment = 0.3, agreeing_rates = 5e-3;  // [s], [s], [rad/s]
+// Moments of stillness, without their margins: those that count, the longest of them, and how near their rates are.
+// Slow rotations of 28 simulated machines that never rest have rates that differ by 0.007 to 0.04 rad/s, or a single
+// moment of 0.2 s; a chain in hands that is held still once (DIODEM) has one of 0.45 to 0.65 s.
+constexpr double least_moment = 0.1, least_longest_moment = 0.3, agreeing_rates = 5e-3;  // [s], [s], [rad/s]
 constexpr int packed_size = states * (states + 1) / 2;
 
 /// One update period of the forward pass.
@@ -133,7 +133,7 @@ bool moments_tell_bias(const RestOptions& options, const InsSensor& sensor, std:
   const std::vector<RestPeriod> still = rest_periods(sensor, time, moments);
   if (still.empty()) return false;
   const RestPeriod& longest = *std::ranges::max_element(still, {}, &RestPeriod::seconds);
-  return longest.seconds() > longest_lone_moment && std::ranges::all_of(still, [&](const RestPeriod& moment) {
+  return longest.seconds() > least_longest_moment && std::ranges::all_of(still, [&](const RestPeriod& moment) {
            return (moment.angular_velocity - longest.angular_velocity).norm() < agreeing_rates;
          });
 }

@@ -7,6 +7,7 @@
 
 #include "kinfer/base/angle.hpp"
 #include "kinfer/base/square.hpp"
+#include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/track/start/thresholds.hpp"
 
 namespace kinfer::track {
@@ -68,11 +69,10 @@ struct AxisSd {
   double on_cone = 0.0;  ///< in the parent, along a cone whose angle is known: where nothing told the azimuth
 };
 
-/// [rad] The larger standard deviation of two, if the smaller one is a fraction of it; 0 otherwise.
-double sd_of_line(const Eigen::Matrix2d& covariance) {
-  const double half = 0.5 * covariance.trace(),
-               apart = std::sqrt(std::max(0.0, square(half) - covariance.determinant()));
-  return half - apart < square(cone_width) * (half + apart) ? std::sqrt(half + apart) : 0.0;
+/// [rad] The largest standard deviation, if the smallest one is a fraction of it; 0 otherwise.
+double sd_of_line(ConstMatrixRef covariance) {
+  const VectorXd variance = symmetric_eigen(covariance).values;
+  return variance[0] < square(cone_width) * variance[1] ? std::sqrt(variance[1]) : 0.0;
 }
 
 AxisSd axis_sd(const FilterModel& model, std::size_t b) {
