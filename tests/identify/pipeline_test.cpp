@@ -150,6 +150,17 @@ TEST(Identify, ATrajectoryHasARowForEachVariableOfTwoBodiesThatAreNoMachine) {
   EXPECT_EQ(found->motion.trajectory.q.rows(), dof(found->chain));
 }
 
+TEST(Identify, AHingeStaysOneWhereConsumerSensorsNeverRest) {
+  for (const std::uint64_t seed : test::repeats({1, 2, 3, 4})) {
+    DrivenMachine drive = test::first_sensors(
+        test::driven_machine("crane", seed, Script::together, {.mounting = Mounting::arbitrary}, "consumer"), 3);
+    drive.recording = within(drive.recording, 6.0, 30.0);
+    const Identification found = test::identified(drive.recording);
+    EXPECT_EQ(found.joints.size(), 2);
+    for (const JointEstimate& joint : found.joints) EXPECT_EQ(joint.type, EstimatedJointType::revolute) << seed;
+  }
+}
+
 TEST(Identify, GivesTheSameBitsForAnyNumberOfThreads) {
   const DrivenMachine drive = driven_machine("excavator", {}, Script::standard, 1);
   const auto run = [&](int threads) {

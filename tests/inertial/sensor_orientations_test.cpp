@@ -147,6 +147,28 @@ TEST(OrientationFilters, AWiderBiasLimitFindsTheBiasOfAPoorGyroAtItsFirstRest) {
   }
 }
 
+TEST(OrientationFilters, ABiasThatIsKnownIsNotSoughtInMotion) {
+  const Vec3 bias(0.02, -0.015, 0.03);  // [rad/s]
+  CarriedSensor c = carried({.seconds = 30.0, .sampling_rate = 100.0, .rest = -2.0, .has_magnetometer = false});
+  for (std::size_t k = 0; k < 3; ++k)
+    for (float& x : c.sensor.angular_velocity.axis[k]) x += static_cast<float>(bias[static_cast<Eigen::Index>(k)]);
+  ASSERT_TRUE(rest_periods(c.sensor, c.time).empty());
+  const auto turned_too_far = [&](const FilterOptions& options) {
+    const auto q = estimate_orientations(c.sensor, c.time, options);
+    const std::size_t from = 500;  // by then gravity has told the tilt
+    return (q[from].conjugate() * q.back()).angularDistance(c.truth[from].conjugate() * c.truth.back());
+  };
+  for (const OrientationFilter& filter : orientation_filters()) {
+    const FilterOptions known = with_bias(filter.default_options, bias, 5e-4);
+    if (!filter.set_bias) {
+      EXPECT_EQ(turned_too_far(known), turned_too_far(filter.default_options)) << filter.name;
+      continue;
+    }
+    EXPECT_GT(turned_too_far(filter.default_options), 3.0 * degree) << filter.name;
+    EXPECT_LT(turned_too_far(known), 1.0 * degree) << filter.name;
+  }
+}
+
 TEST(SegmentMotion, CarriesTheGravityThatItSubtracted) {
   const InsRecording recording = recording_of({carried({.seconds = 10.0, .sampling_rate = 100.0}),
                                                carried({.seconds = 10.0, .sampling_rate = 100.0, .seed = 2})});

@@ -15,6 +15,7 @@
 #include "kinfer/identify/geometry/identified_chain.hpp"
 #include "kinfer/identify/geometry/link_estimates.hpp"
 #include "kinfer/identify/handover/complete_tracking.hpp"
+#include "kinfer/identify/handover/told_biases.hpp"
 #include "kinfer/identify/joints/search_links.hpp"
 #include "kinfer/identify/joints/searched_joint.hpp"
 #include "kinfer/identify/joints/thresholds.hpp"
@@ -29,6 +30,8 @@
 
 namespace kinfer::identify {
 namespace {
+
+constexpr int max_bias_updates = 2;
 
 template <class T>
 void append(std::vector<T>& list, const std::vector<T>& more) {
@@ -248,11 +251,26 @@ std::vector<std::size_t> left_out(const RecordingSelection& part, std::size_t se
   return result;
 }
 
+/// Takes the biases that a fit has told to gyroscopes that never rest; false: all that is found with them is found.
+/// Such a gyroscope drifts away from the others, which passes for motion: one of a consumer grade turns a hinge into a
+/// ball joint within half a minute.
+bool update_biases(LogDiagnosis& diagnosis, const ChainGeometry& geometry, const InsRecording& recording,
+                   const IdentifyOptions& options) {
+  if (!geometry.tracking || options.refine.known || diagnosis.bias_updates >= max_bias_updates) return false;
+  std::vector<GyroscopeBias> told = told_biases(*geometry.tracking, recording, options.refine.common);
+  if (std::ranges::all_of(told, [&](const GyroscopeBias& bias) { return agrees_with_one_of(diagnosis.biases, bias); }))
+    return false;
+  diagnosis.biases = std::move(told);
+  ++diagnosis.bias_updates;
+  return true;
+}
+
 /// `log`: the named sensors alone.
 Result<Identification> identify_diagnosed(const InsRecording& log, LogDiagnosis diagnosis, IdentifyOptions options,
                                           const Rng& rng, const Observer& observer) {
   const InsRecording& recording = diagnosis.of(log);
   options.refine.common = diagnosis.scales;
+  options.motion.biases = diagnosis.biases;
   KINFER_TRY(session, Session::open(recording, options.sensors, options.root, options.motion, options.threads));
   for (;;) {
     if (const auto known = check_known(options, session.recording()); !known) return forward_error(known.error());
@@ -271,6 +289,8 @@ Result<Identification> identify_diagnosed(const InsRecording& log, LogDiagnosis 
     KINFER_TRY(links, initial_joints(ordered, connections, options, rng, observer));
     KINFER_TRY(geometry, final_geometry(links, session, ordered, connections, options, observer));
     if (session.update_clocks(geometry.clocks)) continue;
+    if (update_biases(diagnosis, geometry, session.recording(), options))
+      return identify_diagnosed(log, std::move(diagnosis), std::move(options), rng, observer);
     if (!geometry.tracking && !options.refine.zeros.empty())
       return error("--zero: no joint positions were found in this recording");
 

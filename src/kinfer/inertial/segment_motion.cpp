@@ -173,6 +173,14 @@ FilterOutput filter_rotating_sensor(InsSensor sensor, std::span<const double> ti
   return output;
 }
 
+/// Of the options, started with the sensor's bias where that is known and no rest tells it.
+FilterOptions filter_for(const InsSensor& sensor, const SegmentMotionOptions& options,
+                         std::span<const RestPeriod> rests) {
+  const auto known = std::ranges::find(options.biases, sensor.name, &GyroscopeBias::sensor);
+  if (known == options.biases.end() || !rests.empty()) return options.filter;
+  return with_bias(options.filter, known->mean, known->sd);
+}
+
 /// With filters that do not estimate the gyro errors, one bias comes from the rests.
 FilterOutput filter_sensor(const InsSensor& recorded, std::span<const double> time, const FilterOptions& filter,
                            std::span<const RestPeriod> rests) {
@@ -214,7 +222,7 @@ ResampledSegment resample_segment(std::span<const double> clock, const InsRecord
   ResampledSegment result;
   SegmentMotion& m = result.motion;
   m.name = sensor.name;
-  const FilterOutput filter = filter_sensor(sensor, time, options.filter, rests);
+  const FilterOutput filter = filter_sensor(sensor, time, filter_for(sensor, options, rests), rests);
   m.rotation = rotations_on(clock, time, filter.world_q_sensor);
   m.restarts = restarts_of(sensor, time);
   const Span measured = measured_span(sensor, time);
@@ -322,7 +330,8 @@ std::vector<Mat3> segment_rotations(const RecordedMotion& motion, const InsRecor
                                     const InsSensor& sensor, const SegmentMotionOptions& options) {
   const std::span<const double> time = recording.time(sensor);
   const InsSensor whole = bridge_gaps(restore_clipped_peaks(sensor, time), time, inertial::max_filter_gap);
-  return rotations_on(motion.time, time, estimate_orientations(whole, time, options.filter));
+  return rotations_on(motion.time, time,
+                      estimate_orientations(whole, time, filter_for(sensor, options, rest_periods(sensor, time))));
 }
 
 }  // namespace kinfer

@@ -38,12 +38,20 @@ struct RecordedMotion {
 /// Names of the segments' sensors, in order.
 std::vector<std::string> segment_names(const RecordedMotion& motion);
 
+/// The bias of a gyroscope, told by something else than its rests.
+struct GyroscopeBias {
+  std::string sensor{};
+  Vec3 mean = Vec3::Zero();  ///< [rad/s]
+  double sd = 0.0;           ///< [rad/s] of an axis
+};
+
 struct SegmentMotionOptions {
   FilterOptions filter = KinferOfflineOptions{};
   double smoothing = 0.02;        ///< [s] standard deviation of the Gaussian; wider attenuates noise and fast motion
   double stationary_rate = 0.02;  ///< [rad/s] smoothed rms below which a sensor may be stationary
   double stationary_acceleration = 0.15;  ///< [m/s²] smoothed rms, likewise; both must hold
   double gravity = standard_gravity;      ///< [m/s²] subtracted from the specific force
+  std::vector<GyroscopeBias> biases{};    ///< used for sensors that never rest
 };
 
 /// All sensors on the first sensor's clock. An error if there are fewer than two sensors, or a sensor has no usable

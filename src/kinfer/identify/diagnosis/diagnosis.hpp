@@ -8,6 +8,7 @@
 #include "kinfer/base/result.hpp"
 #include "kinfer/estimate/continuous/model/problem.hpp"
 #include "kinfer/evidence/facts/findings.hpp"
+#include "kinfer/inertial/segment_motion.hpp"
 #include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer::identify {
@@ -15,7 +16,9 @@ namespace kinfer::identify {
 struct LogDiagnosis {
   std::optional<InsRecording> mended;  ///< none if the recording is used as it is
   std::vector<Finding> findings{};
-  InsCommonScales scales{};  ///< by which all instruments of a kind were divided
+  InsCommonScales scales{};             ///< by which all instruments of a kind were divided
+  std::vector<GyroscopeBias> biases{};  ///< told by a fit of the log, of sensors that never rest
+  int bias_updates = 0;                 ///< how many fits have told them, each with the biases of the one before
 
   const InsRecording& of(const InsRecording& recording) const { return mended ? *mended : recording; }
 };

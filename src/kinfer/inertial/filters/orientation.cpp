@@ -31,44 +31,55 @@ void accept_initial_bias(KinferFilterOptions& options, double limit) {
   options.bias_sd = limit / 5.0;
 }
 
+void start_with_bias(KinferFilterOptions& options, const Vec3& bias, double sd) {
+  options.bias = bias;
+  options.bias_sd = sd;
+}
+
 }  // namespace
 
 std::span<const OrientationFilter> orientation_filters() {
   static const std::array filters{
-      OrientationFilter{.name = "kinfer",
-                        .help = "online, error-state Kalman filter",
-                        .default_options = KinferFilterOptions{},
-                        .is_causal = true,
-                        .estimates_gyro_errors = false,  // only as they converge; the rests give one bias for all rows
-                        .heading_source = HeadingSource::gyro,
-                        .run =
-                            [](const InsSensor& sensor, std::span<const double> time, const FilterOptions& options) {
-                              return run_online(sensor, time, KinferFilter(std::get<KinferFilterOptions>(options)));
-                            },
-                        .magnetometer = [](FilterOptions& options) -> MagnetometerUse& {
-                          return std::get<KinferFilterOptions>(options).magnetometer;
-                        },
-                        .set_max_initial_bias =
-                            [](FilterOptions& options, double limit) {
-                              accept_initial_bias(std::get<KinferFilterOptions>(options), limit);
-                            }},
-      OrientationFilter{.name = "kinfer-offline",
-                        .help = "smoothed, each row also uses the rows after it",
-                        .default_options = KinferOfflineOptions{},
-                        .is_causal = false,
-                        .estimates_gyro_errors = true,
-                        .heading_source = HeadingSource::gyro,
-                        .run =
-                            [](const InsSensor& sensor, std::span<const double> time, const FilterOptions& options) {
-                              return smooth_orientation(sensor, time, std::get<KinferOfflineOptions>(options));
-                            },
-                        .magnetometer = [](FilterOptions& options) -> MagnetometerUse& {
-                          return std::get<KinferOfflineOptions>(options).filter.magnetometer;
-                        },
-                        .set_max_initial_bias =
-                            [](FilterOptions& options, double limit) {
-                              accept_initial_bias(std::get<KinferOfflineOptions>(options).filter, limit);
-                            }},
+      OrientationFilter{
+          .name = "kinfer",
+          .help = "online, error-state Kalman filter",
+          .default_options = KinferFilterOptions{},
+          .is_causal = true,
+          .estimates_gyro_errors = false,  // only as they converge; the rests give one bias for all rows
+          .heading_source = HeadingSource::gyro,
+          .run =
+              [](const InsSensor& sensor, std::span<const double> time, const FilterOptions& options) {
+                return run_online(sensor, time, KinferFilter(std::get<KinferFilterOptions>(options)));
+              },
+          .magnetometer = [](FilterOptions& options) -> MagnetometerUse& {
+            return std::get<KinferFilterOptions>(options).magnetometer;
+          },
+          .set_max_initial_bias =
+              [](FilterOptions& options, double limit) {
+                accept_initial_bias(std::get<KinferFilterOptions>(options), limit);
+              },
+          .set_bias = [](FilterOptions& options, const Vec3& bias,
+                         double sd) { start_with_bias(std::get<KinferFilterOptions>(options), bias, sd); }},
+      OrientationFilter{
+          .name = "kinfer-offline",
+          .help = "smoothed, each row also uses the rows after it",
+          .default_options = KinferOfflineOptions{},
+          .is_causal = false,
+          .estimates_gyro_errors = true,
+          .heading_source = HeadingSource::gyro,
+          .run =
+              [](const InsSensor& sensor, std::span<const double> time, const FilterOptions& options) {
+                return smooth_orientation(sensor, time, std::get<KinferOfflineOptions>(options));
+              },
+          .magnetometer = [](FilterOptions& options) -> MagnetometerUse& {
+            return std::get<KinferOfflineOptions>(options).filter.magnetometer;
+          },
+          .set_max_initial_bias =
+              [](FilterOptions& options, double limit) {
+                accept_initial_bias(std::get<KinferOfflineOptions>(options).filter, limit);
+              },
+          .set_bias = [](FilterOptions& options, const Vec3& bias,
+                         double sd) { start_with_bias(std::get<KinferOfflineOptions>(options).filter, bias, sd); }},
       OrientationFilter{.name = "paper",
                         .help = "the 12-state filter of Péntek et al. 2021",
                         .default_options = PaperEkfOptions{},
@@ -126,6 +137,11 @@ FilterOptions without_magnetometer(FilterOptions options) {
 
 FilterOptions with_max_initial_bias(FilterOptions options, double limit) {
   if (const auto set = filter_of(options).set_max_initial_bias) set(options, limit);
+  return options;
+}
+
+FilterOptions with_bias(FilterOptions options, const Vec3& bias, double sd) {
+  if (const auto set = filter_of(options).set_bias) set(options, bias, sd);
   return options;
 }
 

@@ -38,6 +38,8 @@ struct OrientationFilter {
   MagnetometerUse& (*magnetometer)(FilterOptions& options) = nullptr;  ///< the option itself
   /// Accepts an initial rest at any gyro bias up to `limit` [rad/s]; null: the filter has no such limit.
   void (*set_max_initial_bias)(FilterOptions& options, double limit) = nullptr;
+  /// The gyroscope's bias at the start [rad/s] and its standard deviation; null: the filter takes none.
+  void (*set_bias)(FilterOptions& options, const Vec3& bias, double sd) = nullptr;
 };
 
 /// The table, in the order of the help text.
@@ -56,9 +58,11 @@ std::string filter_help();
 /// Whether the filter uses a magnetometer.
 MagnetometerUse magnetometer_use(FilterOptions options);
 
-/// The same filter without the magnetometer; and with another limit of the initial bias, if it has one.
+/// The same filter without the magnetometer; with another limit of the initial bias, if it has one; and started with a
+/// bias, if it takes one.
 FilterOptions without_magnetometer(FilterOptions options);
 FilterOptions with_max_initial_bias(FilterOptions options, double limit);
+FilterOptions with_bias(FilterOptions options, const Vec3& bias, double sd);
 
 /// Runs the filter of the options. Rows without usable measurements repeat the previous row; never NaN.
 FilterOutput run_filter(const InsSensor& sensor, std::span<const double> time, const FilterOptions& options);
