@@ -9,9 +9,11 @@
 #include <utility>
 
 #include "kinfer/estimate/continuous/excerpt.hpp"
+#include "kinfer/estimate/continuous/fast_motion.hpp"
 #include "kinfer/estimate/continuous/knot_spacing.hpp"
 #include "kinfer/estimate/continuous/solver/fact_residuals.hpp"
 #include "kinfer/estimate/continuous/solver/model_error.hpp"
+#include "kinfer/estimate/continuous/solver/noise_update.hpp"
 #include "kinfer/identify/refinement/fact_resolution.hpp"
 #include "kinfer/identify/refinement/fits/azimuth.hpp"
 #include "kinfer/identify/refinement/fits/clock_fit.hpp"
@@ -86,6 +88,12 @@ Deviations find_deviations(InsFacts& facts, const RefinementTask& task, const Se
   return found;
 }
 
+/// To the fit in which motion that the splines do not follow counts as any other.
+std::vector<MatrixXd> shifts_with_fast_motion(const RefinementTask& task, const RefinementFit& fitted) {
+  const RefinementFit all = refit_with(task, fitted, [](RefinementSetup& setup) { count_fast_motion(setup.problem); });
+  return shifts(fitted.fit.unknowns.bodies, all.fit.unknowns.bodies);
+}
+
 /// Whether a clock is wrong by so much that the caller will correct it and fit again.
 bool clocks_differ(const InsUnknowns& x) {
   return std::ranges::any_of(x.errors, [](const InsErrors& e) { return std::abs(e.clock.offset) > max_clock_offset; });
@@ -152,7 +160,12 @@ Result<RefinementAttempt> refine_with(const InsRecording& recording, const Recor
                                       const RefinementOptions& options, const SensorModel& grade, double knot_spacing,
                                       double least_noise, const Observer& observer) {
   const auto set_up = [&] {
-    return set_up_refinement(recording, motion, tree, starts, grade, knot_spacing, least_noise, options.common);
+    RefinementSetup made =
+        set_up_refinement(recording, motion, tree, starts, grade, knot_spacing, least_noise, options.common);
+    for (std::size_t s = 0; s < recording.sensors.size(); ++s)
+      discount_fast_motion(made.problem.sensors[s], recording.sensors[s], recording.time(recording.sensors[s]),
+                           made.problem.grid);
+    return made;
   };
   RefinementSetup setup = set_up();
   const bool is_noise_raised = setup.is_noise_raised;
@@ -173,10 +186,8 @@ Result<RefinementAttempt> refine_with(const InsRecording& recording, const Recor
   facts.closures = fitted.setup.problem.facts.closures;
   result.grade = grade.name;
   result.knot_spacing = knot_spacing;
-  for (const InsMeasurements& sensor : fitted.setup.problem.sensors) {
-    result.noise.push_back(sensor.noise);
-    result.noise_floor.push_back(sensor.noise_floor);
-  }
+  result.noise = recorded_noise(fitted.setup.problem, fitted.fit.cost);
+  for (const InsMeasurements& sensor : fitted.setup.problem.sensors) result.noise_floor.push_back(sensor.noise_floor);
   ModelError model_error;
   if (worst_misfit(fitted.setup.problem) > max_rigid_chain_misfit && !clocks_differ(fitted.fit.unknowns)) {
     LowFrequencyFit slow = fit_low_frequency(task, fitted, observer);
@@ -184,6 +195,8 @@ Result<RefinementAttempt> refine_with(const InsRecording& recording, const Recor
     model_error = std::move(slow.error);
     result.noise = std::move(slow.noise);
     result.cutoff = slow.cutoff;
+  } else if (discounts_fast_motion(fitted.setup.problem)) {
+    model_error = {shifts_with_fast_motion(task, fitted), std::vector<double>(recording.sensors.size())};
   }
   measure_azimuths(task, fitted);
   result.fit = fitted.fit;

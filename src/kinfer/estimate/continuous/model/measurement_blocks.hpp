@@ -41,6 +41,7 @@ struct InsBlock {
   Eigen::Vector3f left = Eigen::Vector3f::Zero();  ///< sum of squares about the polynomial, per axis
   std::int32_t samples = 0;                        ///< number of measurements; 0: none
   std::int32_t rows = 0;                           ///< rows of R and Qᵀ y in use
+  float excess = 1.0F;  ///< variance of the measurements over that of the others; R, Qᵀ y and the squares are divided
 };
 
 enum class InsInstrument { gyroscope, accelerometer };

@@ -100,7 +100,8 @@ void discount(MatrixXd& covariance, ConstMatrixRef white, ConstMatrixRef prior, 
     const double variance = weights.dot(direction(noise.parameters));
     if (!(variance > 0.0)) continue;
     direction /= std::sqrt(variance);
-    const double known = std::max({1.0 - doubt * share.values[i], direction.dot(prior * direction), least_known});
+    const double signal = std::max(0.0, 1.0 - doubt * share.values[i]);
+    const double known = std::max({signal * signal, direction.dot(prior * direction), least_known});
     if (known < 1.0) covariance += (1.0 / known - 1.0) * direction * direction.transpose();
   }
 }

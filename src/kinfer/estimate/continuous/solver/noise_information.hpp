@@ -24,7 +24,8 @@ NoiseInformation noise_information(const InsProblem& problem, const InsLayout& l
                                    int threads);
 
 /// Takes it out of a covariance of the global parameters. `white`: the covariance whose information has that share;
-/// `prior`: information that remains.
+/// `prior`: information that remains. Of information I in a direction the share s is from noise: the cost is curved by
+/// (1 − s) I only, but its gradient has the variance I, so that of the estimate is 1 / ((1 − s)² I) (Fuller 1987).
 void discount(MatrixXd& covariance, ConstMatrixRef white, ConstMatrixRef prior, const NoiseInformation& noise);
 
 }  // namespace kinfer

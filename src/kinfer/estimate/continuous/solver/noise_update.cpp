@@ -36,10 +36,8 @@ double autocorrelation_time(const std::vector<std::array<float, 3>>& offset, std
 }
 
 /// Mean of the blocks' mean squares without the largest twentieth, which are spikes and collisions.
-double trimmed_mean(const InstrumentFit& fit) {
-  std::vector<float> values;
-  for (const float value : fit.block)
-    if (std::isfinite(value)) values.push_back(value);
+double trimmed_mean(std::vector<float> values) {
+  std::erase_if(values, [](float value) { return !std::isfinite(value); });
   if (values.empty()) return 0.0;
   const auto kept = values.begin() + static_cast<std::ptrdiff_t>(values.size() - values.size() / 20);
   std::nth_element(values.begin(), kept - 1, values.end());
@@ -63,7 +61,7 @@ void estimate_instrument_noise(std::vector<InsNoise>& all, const InsProblem& pro
   std::vector<double> estimated;
   for (std::size_t s = 0; s < problem.sensors.size(); ++s)
     estimated.push_back(problem.sensors[s].noise.*noise / problem.sensors[s].noise_floor.*noise *
-                        std::sqrt(trimmed_mean(cost.sensors[s].*fit)));
+                        std::sqrt(trimmed_mean((cost.sensors[s].*fit).block)));
   const std::vector<double> factors = regularised(estimated);
   for (std::size_t s = 0; s < problem.sensors.size(); ++s)
     all[s].*noise = factors[s] * problem.sensors[s].noise_floor.*noise;
@@ -127,6 +125,23 @@ std::vector<InsNoise> long_run_noise(const InsProblem& problem, const InsCost& c
     own.force *= std::sqrt(std::max(1.0, long_run_variance(limited(cost.sensors[s].force))));
   }
   return noise;
+}
+
+std::vector<InsNoise> recorded_noise(const InsProblem& problem, const InsCost& cost) {
+  const auto recorded = [](double noise, const std::vector<float>& mean_squares, const std::vector<InsBlock>& blocks) {
+    std::vector<float> with_excess = mean_squares;
+    for (std::size_t k = 0; k < with_excess.size(); ++k) with_excess[k] *= blocks[k].excess;
+    const double usual = trimmed_mean(mean_squares);
+    return usual > 0.0 ? noise * std::sqrt(trimmed_mean(with_excess) / usual) : noise;
+  };
+  std::vector<InsNoise> all;
+  for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
+    const InsMeasurements& r = problem.sensors[s];
+    const SensorFit& fit = cost.sensors[s];
+    all.push_back({recorded(r.noise.angular_velocity, fit.angular_velocity.block, r.angular_velocity),
+                   recorded(r.noise.force, fit.force.block, r.force)});
+  }
+  return all;
 }
 
 double persistent_variance(const InstrumentFit& fit) {

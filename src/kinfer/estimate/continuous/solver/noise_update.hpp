@@ -10,6 +10,9 @@ namespace kinfer {
 /// noise. True if one of them changed notably.
 bool update_noise(InsProblem& problem, const InsCost& cost);
 
+/// The sensors' noise with the excess of blocks that the fit discounts: of the measurements as they were recorded.
+std::vector<InsNoise> recorded_noise(const InsProblem& problem, const InsCost& cost);
+
 /// Standard deviations of white noise that has as much power at low frequencies as the residuals: what they are worth
 /// as independent samples (long-run variance; Newey and West 1987). Never below the problem's noise.
 std::vector<InsNoise> long_run_noise(const InsProblem& problem, const InsCost& cost);

@@ -54,28 +54,6 @@ double estimated_compliance(const RefinementTask& task, const RefinementFit& fit
   return covariance ? estimate_mount_compliance(problem, fitted.fit, *covariance) : problem.prior.tilt;
 }
 
-/// The step in a body's unknowns from one estimate of it to another.
-VectorXd shift_of(const InsBody& from, const InsBody& to) {
-  VectorXd shift(from.unknowns());
-  Index k = 0;
-  const auto turn = [&](const Mat3& a, const Mat3& b, const std::array<bool, 3>& is_free) {
-    const Vec3 v = log_so3(a.transpose() * b);
-    for (std::size_t i = 0; i < 3; ++i)
-      if (is_free[i]) shift[k++] = v[static_cast<Index>(i)];
-  };
-  turn(from.parent_R_axis, to.parent_R_axis, from.free_parent_rotation);
-  turn(from.child_R_axis, to.child_R_axis, from.free_child_rotation);
-  if (from.free_point_in_parent) shift.segment<3>(k) = to.point_in_parent - from.point_in_parent, k += 3;
-  if (from.free_point_in_child) shift.segment<3>(k) = to.point_in_child - from.point_in_child;
-  return shift;
-}
-
-std::vector<MatrixXd> shifts(const InsBodies& from, const InsBodies& to) {
-  std::vector<MatrixXd> result;
-  for (std::size_t b = 0; b < from.size(); ++b) result.push_back(shift_of(from[b], to[b]));
-  return result;
-}
-
 /// Σ log of the unknowns' variances, the squared shift added to each.
 double log_uncertainty(const RefinementTask& task, const RefinementFit& low_frequency,
                        const std::vector<MatrixXd>& shift) {

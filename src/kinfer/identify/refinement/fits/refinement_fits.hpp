@@ -54,6 +54,9 @@ RefinementFit refit_with(const RefinementTask& task, const RefinementFit& fitted
   return fit_from(task, std::move(setup));
 }
 
+/// The steps in the bodies' unknowns from one estimate to another, a column each.
+std::vector<MatrixXd> shifts(const InsBodies& from, const InsBodies& to);
+
 /// Largest ratio of residual noise to noise floor over all instruments.
 double worst_misfit(const InsProblem& problem);
 
