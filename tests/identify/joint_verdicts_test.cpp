@@ -98,6 +98,16 @@ TEST(JointVerdicts, EachDoubtConcernsItsJointAlone) {
   }
 }
 
+TEST(JointVerdicts, NoJointIsSimplyUsableWhereTheFitFailed) {
+  Judged judged = three_segments();
+  judged.result.notes = {{IdentificationNoteKind::refinement_failed, {{"reason", std::string("no covariance")}}}};
+  for (const JointVerdict& verdict : judged.verdicts()) {
+    ASSERT_EQ(verdict.doubts.size(), 1U);
+    EXPECT_EQ(verdict.doubts[0].kind, JointDoubtKind::not_fitted);
+    EXPECT_EQ(verdict.usability, JointUsability::use_with_care);
+  }
+}
+
 TEST(JointVerdicts, AnUncertainTypeNamesTheTypesThatArePossible) {
   Judged judged = three_segments();
   judged.result.joints[0].type_probabilities = {{.of_type = {0.96, 0.0, 0.04, 0.0, 0.0}}};

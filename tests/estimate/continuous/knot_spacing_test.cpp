@@ -72,6 +72,17 @@ TEST(KnotSpacing, IsNeverFinerThanTheSamplesSupport) {
   EXPECT_GE(knots({.waves = {{20.0, 3.0}}}), 0.025);
 }
 
+TEST(KnotSpacing, IsThatOfTheSlowestLogger) {
+  InsRecording both = recorded({.waves = {{5.0, 3.0}}});
+  const InsRecording slow = recorded({.waves = {{5.0, 3.0}}, .sampling_rate = 100.0});
+  both.loggers.push_back(slow.loggers[0]);
+  both.sensors.push_back(slow.sensors[0]);
+  both.sensors.back().logger = 1;
+  EXPECT_NEAR(select_knot_spacing(both), 6.0 / 100.0, 1e-6);
+  std::swap(both.sensors[0], both.sensors[1]);
+  EXPECT_NEAR(select_knot_spacing(both), 6.0 / 100.0, 1e-6);
+}
+
 TEST(KnotSpacing, VibrationAboveTheFinestKnotsIsNoiseAndRefinesNothing) {
   EXPECT_DOUBLE_EQ(knots({.waves = {{0.6, 3.0}, {31.0, 0.5}}}), widest_knot_spacing);
 }

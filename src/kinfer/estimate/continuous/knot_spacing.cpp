@@ -178,14 +178,21 @@ double sufficient_knot_spacing(const std::vector<Window>& windows, double widest
   return knots;
 }
 
+/// By the slowest logger: all sensors share the knots. With a third of the samples that are wanted, of one of five
+/// sensors, the normal equations are not positive definite.
+double least_knot_spacing(const InsRecording& recording) {
+  double slowest = 0.0;
+  for (const InsSensor& sensor : recording.sensors) slowest = std::max(slowest, median_period(recording.time(sensor)));
+  return std::max(finest_knot_spacing, std::min(widest_knot_spacing, static_cast<double>(least_rows) * slowest));
+}
+
 }  // namespace
 
 double select_knot_spacing(const InsRecording& recording) {
+  const double least = least_knot_spacing(recording);
   double knots = widest_knot_spacing;
   for (const InsSensor& sensor : recording.sensors) {
-    const auto time = recording.time(sensor);
-    const double least = std::max(finest_knot_spacing, static_cast<double>(least_rows) * median_period(time));
-    const auto windows = most_active_windows(sensor, time);
+    const auto windows = most_active_windows(sensor, recording.time(sensor));
     if (windows.empty() || knots * finer < least) continue;
     knots = std::min(knots, std::max(least, finer * sufficient_knot_spacing(windows, knots / finer, least)));
   }

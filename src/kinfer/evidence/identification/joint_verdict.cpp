@@ -35,6 +35,8 @@ std::string_view name(JointDoubtKind kind) {
       return "undetermined";
     case JointDoubtKind::unsafe_order:
       return "unsafe_order";
+    case JointDoubtKind::not_fitted:
+      return "not_fitted";
     case JointDoubtKind::unexplained_motion:
       return "unexplained_motion";
     case JointDoubtKind::uncertain_type:

@@ -28,6 +28,7 @@ enum class JointDoubtKind {
   not_moved,           ///< no values
   undetermined,        ///< no values: nothing is known of its axis or of its point
   unsafe_order,        ///< first, second: the pair that would replace it; margin, safe_margin
+  not_fitted,          ///< no values: the fit of the whole recording failed, the joint is that of two sensors
   unexplained_motion,  ///< sensor, ratio: of the residual noise to the instrument's
   uncertain_type,      ///< types, probabilities: of those that are possible, most probable first
   inaccurate,          ///< line_sd [m], direction_sd [rad]

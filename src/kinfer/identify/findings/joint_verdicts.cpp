@@ -84,6 +84,13 @@ void doubt_order(const OrderedMotion& ordered, const PairFit& link, const std::v
                      {"safe_margin", safe_margin}}});
 }
 
+/// The search takes no error but noise into account.
+void doubt_fit(const Identification& result, Doubts& doubts) {
+  if (std::ranges::find(result.notes, IdentificationNoteKind::refinement_failed, &IdentificationNote::kind) !=
+      result.notes.end())
+    doubts.push_back({JointDoubtKind::not_fitted, {}});
+}
+
 void doubt_residuals(const Identification& result, const JointEstimate& joint, Doubts& doubts) {
   for (const IdentificationNote& note : result.notes) {
     if (note.kind != IdentificationNoteKind::unexplained_motion) continue;
@@ -158,6 +165,7 @@ JointVerdict verdict_on(const JointEstimate& joint, const Identification& result
     doubt_reach(joint, verdict.doubts);
   doubt_order(ordered, ordered.tree.pair(parent, child), result.loops, verdict.doubts);
   doubt_type(joint, verdict.doubts);
+  doubt_fit(result, verdict.doubts);
   doubt_residuals(result, joint, verdict.doubts);
   doubt_accuracy(result, joint, verdict.doubts);
   verdict.usability = usability_of(verdict.doubts);

@@ -56,6 +56,8 @@ std::string doubt_sentence(const JointDoubt& doubt) {
     case JointDoubtKind::unsafe_order:
       return phrase("joint_unsafe_order", "{} and {} may be joined instead (margin {:.2f}, safe is {:.0f})",
                     v.text("first"), v.text("second"), v.number("margin"), v.number("safe_margin"));
+    case JointDoubtKind::not_fitted:
+      return phrase("joint_not_fitted", "the fit of the whole recording failed: it is known by two sensors alone");
     case JointDoubtKind::unexplained_motion:
       return phrase("joint_unexplained_motion", "the motion of {} is explained to {:.0f} times its noise only",
                     v.text("sensor"), v.number("ratio"));
