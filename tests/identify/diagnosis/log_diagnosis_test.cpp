@@ -78,6 +78,16 @@ TEST(LogDiagnosis, UnitsAreToldAndConverted) {
   EXPECT_LT(difference(*diagnosis->mended, &InsSensor::field), 1e-3);
 }
 
+TEST(LogDiagnosis, IronThatTurnsWithAMagnetometerIsNoUnitOfTheRates) {
+  for (const float iron : {30.0F, 60.0F, 120.0F}) {  // [µT]
+    const auto log = with([iron](InsRecording& r) {
+      for (std::size_t s = 0; s < r.sensors.size(); ++s)
+        for (float& x : r.sensors[s].field.axis[s % 3]) x += iron;
+    });
+    EXPECT_THAT(kinds_of(diagnose_log(log, 1)), ::testing::Not(::testing::Contains(FindingKind::rate_unit))) << iron;
+  }
+}
+
 TEST(LogDiagnosis, AUnitOfTimeThatTheFileStatesIsBelieved) {
   const auto slow = [](bool states_unit) {
     return with([states_unit](InsRecording& r) {

@@ -94,14 +94,18 @@ std::size_t common_unit(const std::vector<SensorLikelihoods>& sensors) {
 }
 
 /// That of the log, unless this sensor by itself contradicts it. A sensor that stands still prefers any unit that makes
-/// its bias small: another unit must explain more than no rotation does.
+/// its bias small: another unit must explain more than no rotation does. And gravity must tell it: iron that turns with
+/// a magnetometer holds its field back, as slower rates would.
 std::size_t unit_of(const SensorLikelihoods& sensor, std::size_t common) {
   const auto most = [&](std::size_t unit) { return sensor.of(unit, sensor.best_map(unit)); };
   std::size_t best = common;
   for (std::size_t u = 0; u < no_rotation; ++u)
     if (most(u) > most(best)) best = u;
+  const auto by_gravity = [&](std::size_t unit) { return std::ranges::max(sensor.force[unit].of); };
   const bool rotates = most(best) - most(no_rotation) > min_map_gain;
-  return rotates && most(best) - most(common) > 2.0 * min_map_gain ? best : common;
+  const bool is_told =
+      most(best) - most(common) > 2.0 * min_map_gain && by_gravity(best) - by_gravity(common) > min_map_gain;
+  return rotates && is_told ? best : common;
 }
 
 /// Gains of the best map over the identity, and over the next one of them.

@@ -88,7 +88,7 @@ Deviations find_deviations(InsFacts& facts, const RefinementTask& task, const Se
   return found;
 }
 
-/// To the fit in which motion that the splines do not follow counts as any other.
+/// To the fit in which motion that the splines do not follow counts as any other. Both know the measured azimuths.
 std::vector<MatrixXd> shifts_with_fast_motion(const RefinementTask& task, const RefinementFit& fitted) {
   const RefinementFit all = refit_with(task, fitted, [](RefinementSetup& setup) { count_fast_motion(setup.problem); });
   return shifts(fitted.fit.unknowns.bodies, all.fit.unknowns.bodies);
@@ -196,10 +196,10 @@ Result<RefinementAttempt> refine_with(const InsRecording& recording, const Recor
     model_error = std::move(slow.error);
     result.noise = std::move(slow.noise);
     result.cutoff = slow.cutoff;
-  } else if (discounts_fast_motion(fitted.setup.problem)) {
-    model_error = {shifts_with_fast_motion(task, fitted), std::vector<double>(recording.sensors.size())};
   }
   measure_azimuths(task, fitted);
+  if (result.cutoff <= 0.0 && discounts_fast_motion(fitted.setup.problem))
+    model_error = {shifts_with_fast_motion(task, fitted), std::vector<double>(recording.sensors.size())};
   result.fit = fitted.fit;
   fitted.fit.cost = {};  // frees memory: the residuals of an hour are large
   const auto covariance =

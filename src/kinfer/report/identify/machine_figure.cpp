@@ -46,9 +46,13 @@ void draw_joint(svg::Scene& scene, const IdentificationEvidence& evidence, const
   draw_directions(scene, joint.unobservable_in_child, child->second, point, 0.25 * size);
   scene.line({point, child->second.position}, "arm");
   scene.line({point - 0.12 * size * axis, point + 0.12 * size * axis}, "joint-axis");
+  const auto has_place = [](const JointEstimate& j) {
+    return is_point_known(j.sd.point_in_parent, j.unobservable_in_parent);
+  };
   for (const JointRecord& next : evidence.joints)
-    if (next.estimate.parent == joint.child) scene.line({point, child->second * next.estimate.point_in_parent}, "link");
-  if (joint.parent == evidence.root)
+    if (next.estimate.parent == joint.child && has_place(next.estimate))
+      scene.line({point, child->second * next.estimate.point_in_parent}, "link");
+  if (joint.parent == evidence.root && has_place(joint))
     scene.line({parent->second.position, parent->second * joint.point_in_parent}, "link");
   scene.dot(point, 4.0, "joint");
 }
