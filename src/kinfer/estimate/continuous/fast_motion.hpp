@@ -10,10 +10,10 @@
 namespace kinfer {
 
 /// Of each interval of `grid`: variance of the gyroscope's and of the accelerometer's measurements about splines of
-/// their own, over that of their noise; at least 1, and 1 where that is no more than chance. Those splines have knots
-/// as wide again as the ones that the motion needs (knot_spacing), a step of the search: an acceleration is the second
-/// derivative of a joint's spline, and follows less than a spline of its own. Of an instrument that such splines do not
-/// follow at all, all are 1.
+/// their own, over that of their noise; at least 1, and 1 where that is no more than chance. The knots of those
+/// splines are wider than `grid`'s by √2, as finer ones were chosen by it (knot_spacing): an acceleration is the second
+/// derivative of a joint's spline, which follows less than a spline of the acceleration itself. Of an instrument that
+/// such splines do not follow at all, all are 1.
 std::array<std::vector<double>, 2> unfollowed_variances(const InsSensor& sensor, std::span<const double> time,
                                                         const SplineGrid& grid, const InsNoise& noise);
 
