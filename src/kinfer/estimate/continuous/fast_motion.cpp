@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "kinfer/base/square.hpp"
+#include "kinfer/estimate/continuous/knot_spacing.hpp"
 
 namespace kinfer {
 namespace {
@@ -32,21 +32,10 @@ struct SplineResiduals {
       : squares{std::vector<double>(intervals), std::vector<double>(intervals)}, terms(intervals) {}
 };
 
-/// One sample a row: angular velocity, specific force; NaN if either is missing or clipped.
-MatrixXd measurements_of(const InsSensor& sensor, std::span<const double> time) {
-  MatrixXd rows = MatrixXd::Constant(static_cast<Index>(time.size()), 6, std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t i = 0; i < time.size(); ++i) {
-    const InsSample s = sample(sensor, time, i);
-    if (s.has_angular_velocity && !s.angular_velocity_clipped && s.has_acceleration)
-      rows.row(static_cast<Index>(i)) << s.angular_velocity.transpose(), s.acceleration.transpose();
-  }
-  return rows;
-}
-
 SplineResiduals spline_residuals(const InsSensor& sensor, std::span<const double> time, const SplineGrid& grid) {
   const SplineGrid wide{grid.begin, wider * grid.period,
                         static_cast<Index>(std::ceil(static_cast<double>(grid.intervals) / wider))};
-  const MatrixXd rows = measurements_of(sensor, time), spline = fit_spline(wide, time, rows);
+  const MatrixXd rows = measurement_rows(sensor, time, 0, time.size()), spline = fit_spline(wide, time, rows);
   SplineResiduals sums(static_cast<std::size_t>(grid.intervals));
   double used = 0.0;
   for (std::size_t i = 0; i < time.size(); ++i) {

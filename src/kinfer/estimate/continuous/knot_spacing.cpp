@@ -34,16 +34,11 @@ struct Window {
 };
 
 Window window_of(const InsSensor& sensor, std::span<const double> time, std::size_t first, std::size_t end) {
-  const auto rows = static_cast<Index>(end - first);
   Window window{{time.begin() + static_cast<std::ptrdiff_t>(first), time.begin() + static_cast<std::ptrdiff_t>(end)},
-                MatrixXd::Constant(rows, 6, std::numeric_limits<double>::quiet_NaN()),
+                measurement_rows(sensor, time, first, end),
                 0.0};
-  for (Index i = 0; i < rows; ++i) {
-    const InsSample s = sample(sensor, time, first + static_cast<std::size_t>(i));
-    if (!s.has_angular_velocity || s.angular_velocity_clipped || !s.has_acceleration) continue;
-    window.measurements.row(i) << s.angular_velocity.transpose(), s.acceleration.transpose();
-    window.activity += s.angular_velocity.squaredNorm() / static_cast<double>(rows);
-  }
+  for (const auto& row : window.measurements.rowwise())
+    if (row.allFinite()) window.activity += Vec3(row.head<3>()).squaredNorm() / static_cast<double>(end - first);
   return window;
 }
 
@@ -187,6 +182,17 @@ double least_knot_spacing(const InsRecording& recording) {
 }
 
 }  // namespace
+
+MatrixXd measurement_rows(const InsSensor& sensor, std::span<const double> time, std::size_t first, std::size_t end) {
+  const auto rows = static_cast<Index>(end - first);
+  MatrixXd measurements = MatrixXd::Constant(rows, 6, std::numeric_limits<double>::quiet_NaN());
+  for (Index i = 0; i < rows; ++i) {
+    const InsSample s = sample(sensor, time, first + static_cast<std::size_t>(i));
+    if (!s.has_angular_velocity || s.angular_velocity_clipped || !s.has_acceleration) continue;
+    measurements.row(i) << s.angular_velocity.transpose(), s.acceleration.transpose();
+  }
+  return measurements;
+}
 
 double select_knot_spacing(const InsRecording& recording) {
   const double least = least_knot_spacing(recording);

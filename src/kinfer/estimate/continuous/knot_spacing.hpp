@@ -3,6 +3,9 @@
 // arm must not look like a model error, and a slow machine should not cost more than necessary.
 #pragma once
 
+#include <span>
+
+#include "kinfer/linalg/types.hpp"
 #include "kinfer/measurement/ins/ins_recording.hpp"
 #include "kinfer/measurement/sensor_model.hpp"
 
@@ -12,6 +15,10 @@ constexpr double widest_knot_spacing = 0.1;  ///< [s] relative error 1e-3 at 2.5
 
 /// [s] The same where a machine vibrates: relative error 1e-3 at 0.6 Hz.
 constexpr double widest_knot_spacing_in_vibration = 0.4;
+
+/// [angular velocity, specific force] of the rows from `first` to before `end`, one a row; NaN where either is missing
+/// or clipped.
+MatrixXd measurement_rows(const InsSensor& sensor, std::span<const double> time, std::size_t first, std::size_t end);
 
 /// [s] between knots, from `widest_knot_spacing` down to 0.025 s in steps of √2.
 ///
