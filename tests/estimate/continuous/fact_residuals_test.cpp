@@ -186,5 +186,23 @@ TEST(FactResiduals, TouchesAreOneAndTheSamePointInTheRoot) {
   }
 }
 
+TEST(FactResiduals, AMeasuredAxisIsOneThatATapeATouchOrASurveyEndsAt) {
+  using Kind = InsPoint::Kind;
+  const InsPoint axis{Kind::joint_axis, 2}, centre{Kind::joint_centre, 2}, sensor{Kind::sensor, 0};
+  InsFacts facts;
+  facts.tapes = {{.from = sensor, .to = centre}};
+  EXPECT_FALSE(is_measured_axis(facts, 2));
+  facts.tapes = {{.from = axis, .to = sensor}};
+  EXPECT_TRUE(is_measured_axis(facts, 2));
+  EXPECT_FALSE(is_measured_axis(facts, 0));
+  facts.tapes = {{.from = sensor, .to = axis}};
+  EXPECT_TRUE(is_measured_axis(facts, 2));
+  InsFacts touched, surveyed;
+  touched.touches = {{.point = axis, .at = {}}};
+  surveyed.surveyed = {{.point = axis}};
+  EXPECT_TRUE(is_measured_axis(touched, 2));
+  EXPECT_TRUE(is_measured_axis(surveyed, 2));
+}
+
 }  // namespace
 }  // namespace kinfer

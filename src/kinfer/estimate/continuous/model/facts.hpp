@@ -79,6 +79,9 @@ struct InsFacts {
   std::vector<InsClosure> closures{};
 };
 
+/// Whether a fact ends at the axis of the joint that carries the body.
+bool is_measured_axis(const InsFacts& facts, std::size_t body);
+
 /// Additional unknowns of the facts: 3 per unknown point, 3 per touch, 10 per closure, 6 for the surveyor's frame if
 /// there is one.
 struct InsFactUnknowns {

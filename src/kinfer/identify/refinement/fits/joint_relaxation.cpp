@@ -26,11 +26,15 @@ double relaxation_gain(const RefinementTask& task, const RefinementFit& fitted, 
   return log_residual(fitted) - log_residual(spherical);
 }
 
-/// The bodies of the revolute joints. A universal joint consists of two revolute bodies, neither of which is a joint.
-std::vector<std::size_t> bodies_of_revolute_joints(const RefinementTask& task, const RefinementFit& fitted) {
+/// The bodies of the revolute joints that may be relaxed. A universal joint consists of two revolute bodies, neither of
+/// which is a joint. A joint whose axis was measured stays revolute: a spherical one has no axis that a tape ends at.
+std::vector<std::size_t> relaxable_bodies(const RefinementTask& task, const RefinementFit& fitted) {
   std::vector<std::size_t> bodies;
-  for (std::size_t i = 0; i < task.starts.size(); ++i)
-    if (task.starts[i].type == EstimatedJointType::revolute) bodies.push_back(fitted.setup.first_body[i]);
+  for (std::size_t i = 0; i < task.starts.size(); ++i) {
+    const std::size_t body = fitted.setup.first_body[i];
+    if (task.starts[i].type == EstimatedJointType::revolute && !is_measured_axis(task.facts, body))
+      bodies.push_back(body);
+  }
   std::ranges::sort(bodies);
   return bodies;
 }
@@ -50,7 +54,7 @@ std::vector<std::size_t> select_joints_to_relax(const std::vector<std::size_t>& 
 }
 
 RefinementFit relax_joints(const RefinementTask& task, RefinementFit fitted, const Observer& observer) {
-  const std::vector<std::size_t> revolute_joints = bodies_of_revolute_joints(task, fitted);
+  const std::vector<std::size_t> revolute_joints = relaxable_bodies(task, fitted);
   std::vector<double> gains;
   for (const std::size_t body : revolute_joints) {
     report_progress(observer, "loose joints",
