@@ -31,11 +31,16 @@ void add_point_deflection(MatrixXd& covariance, Index begin, const InsBody& sphe
   covariance.diagonal().segment<3>(begin + 3).array() += angle * angle * spherical.point_in_child.squaredNorm();
 }
 
-/// A joint's axes, likewise.
-void add_axis_deflection(MatrixXd& covariance, Index begin, const InsBody& body, double parent, double child) {
-  if (body.motion != JointMotion::revolute && body.motion != JointMotion::prismatic) return;
-  covariance.diagonal().segment<2>(begin).array() += parent * parent;
-  covariance.diagonal().segment<2>(begin + 2).array() += child * child;
+/// A joint's axes, likewise: the turns of its first body's frame in the parent and of its last body's in the child.
+void add_axis_deflection(MatrixXd& covariance, const InsFit& fit, const JointBodies& joint, double parent,
+                         double child) {
+  const InsBody &near = fit.unknowns.bodies[joint.first], &far = fit.unknowns.bodies[joint.last];
+  if (near.motion != JointMotion::revolute && near.motion != JointMotion::prismatic) return;
+  const Index in_parent = std::ranges::count(near.free_parent_rotation, true),
+              before_child = std::ranges::count(far.free_parent_rotation, true),
+              in_child = std::ranges::count(far.free_child_rotation, true);
+  covariance.diagonal().segment(fit.layout.body[joint.first], in_parent).array() += parent * parent;
+  covariance.diagonal().segment(fit.layout.body[joint.last] + before_child, in_child).array() += child * child;
 }
 
 /// Of all parameters, in alternative models.
@@ -78,7 +83,7 @@ MatrixXd parameter_covariance(const InsFit& fit, const InsCovariance& covariance
     const Index begin = first_unknown(fit.layout, joint);
     const InsBody& near = fit.unknowns.bodies[joint.first];
     if (!error.shift.empty())
-      add_axis_deflection(all, begin, near, error.mount_deflection[joint.parent], error.mount_deflection[joint.child]);
+      add_axis_deflection(all, fit, joint, error.mount_deflection[joint.parent], error.mount_deflection[joint.child]);
     if (near.motion == JointMotion::spherical)
       add_point_deflection(all, begin, near, deflection_at(joint, error, common_deflection));
   }
