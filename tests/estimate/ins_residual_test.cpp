@@ -220,6 +220,15 @@ TEST(NoiseUpdate, NeverFallsBelowTheInstrumentNorFarFromTheOtherSensors) {
   EXPECT_NEAR(problem.sensors[2].noise.angular_velocity, 0.01 * 4.0 * 1.5, 1e-7);
 }
 
+TEST(NoiseUpdate, SensorsOutsideOfTheChainSayNothingOfTheOthers) {
+  InsProblem problem = three_sensors();
+  InsCost cost = residual_levels({4.0, 1.0, 1.0});
+  for (const std::size_t outside : {1U, 2U}) cost.sensors[outside] = {};
+  EXPECT_TRUE(update_noise(problem, cost));
+  EXPECT_NEAR(problem.sensors[0].noise.angular_velocity, 0.04, 1e-7);
+  EXPECT_EQ(problem.sensors[1].noise.angular_velocity, 0.01);
+}
+
 TEST(NoiseUpdate, AFewShocksDoNotCount) {
   InsProblem problem = three_sensors();
   InsCost cost = residual_levels({1.0, 1.0, 1.0});

@@ -45,8 +45,10 @@ TEST(RefinedJoint, IsotropicErrorsGiveTheSameDeviationInEveryDirection) {
     const JointStandardDeviation sd = refined_body(body, isotropic(body, 2e-3, 5e-3)).estimate.sd;
     for (const auto& pair : {sd.axis_in_parent, sd.axis_in_child})
       for (const double value : pair) EXPECT_NEAR(value, 2e-3, 1e-12);
+    const double along =
+        body.child_R_axis.col(2).dot(body.point_in_child);  // the points stated lie beside the unknowns
     for (const auto& pair : {sd.point_in_parent, sd.point_in_child})
-      for (const double value : pair) EXPECT_NEAR(value, 5e-3, 1e-12);
+      for (const double value : pair) EXPECT_NEAR(value, std::hypot(5e-3, 2e-3 * along), 1e-12);
     EXPECT_NEAR(refined_body(body, isotropic(body, 0.0, 5e-3)).estimate.sd.along_axis, 5e-3 * std::sqrt(2.0), 1e-12);
   }
 }
@@ -115,6 +117,25 @@ TEST(RefinedJoint, DhDeviationsAreTheScatterOfRandomlyMovedBodies) {
     EXPECT_NEAR(std::sqrt(square[i]), expected[i], 0.1 * expected[i] + 1e-9) << i;
 }
 
+TEST(RefinedJoint, DeviationsOfAPointAreItsScatterAcrossTheAxis) {
+  InsBody body = random_revolute(4);
+  body.point_in_parent += 0.8 * body.parent_R_axis.col(2), body.point_in_child += 0.8 * body.child_R_axis.col(2);
+  const MatrixXd root = 1e-3 * test::random_matrix(body.unknowns(), body.unknowns(), 9);
+  const JointEstimate here = refined_body(body, root * root.transpose()).estimate;
+  const Vec3 across = any_perpendicular(here.axis_in_parent).normalized();  // the first direction that has an sd
+  double square = 0.0;
+  constexpr int samples = 2000;
+  Rng rng(5);
+  for (int k = 0; k < samples; ++k) {
+    VectorXd step(body.unknowns());
+    for (double& value : step) value = rng.normal();
+    const InsBody moved = retract(body, root * step);
+    const Vec3 change = refined_body(moved, isotropic(moved, 1.0, 1.0)).estimate.point_in_parent - here.point_in_parent;
+    square += across.dot(change) * across.dot(change) / samples;
+  }
+  EXPECT_NEAR(std::sqrt(square), here.sd.point_in_parent[0], 0.1 * here.sd.point_in_parent[0]);
+}
+
 TEST(RefinedJoint, ADirectionThatTheRecordingDoesNotTellIsListed) {
   const InsBody body = random_revolute(5);
   MatrixXd covariance = isotropic(body, 1e-3, 1e-3);
@@ -147,7 +168,7 @@ TEST(RefinedJoint, APrismaticJointStartsAtItsZero) {
   const RefinedJoint joint = refined_joint(EstimatedJointType::prismatic, {&body, 1}, {&zero, 1}, covariance);
   EXPECT_LT((joint.estimate.point_in_parent - body.point_in_parent - zero * body.parent_R_axis.col(2)).norm(), 1e-12);
   EXPECT_EQ(joint.estimate.point_in_child.norm(), 0.0) << "the axis passes through the child's sensor";
-  EXPECT_NEAR(joint.estimate.sd.point_in_parent[0], 2e-3, 1e-12);
+  EXPECT_NEAR(joint.estimate.sd.point_in_parent[0], std::hypot(2e-3, zero * 1e-3), 1e-12);
   EXPECT_NEAR(joint.estimate.sd.along_axis, 2e-3, 1e-12);
 }
 
@@ -196,7 +217,9 @@ TEST(FreeClocks, AreRelativeToTheSensorThatRotatesMost) {
   problem.grid = {0.0, 0.1, 10};
   for (const double rate : {0.1, -0.8, 0.3}) problem.sensors.push_back(rotating_at(rate, problem.grid));
   EXPECT_FALSE(layout_of(problem, {{.sensor = 0}}).has_clocks);
-  free_clocks(problem);
+  free_clocks(problem, {{.sensor = 0}, {.sensor = 2}});
+  EXPECT_EQ(problem.clock_reference, 2U) << "sensor 1 is outside of the chain";
+  free_clocks(problem, {{.sensor = 0}, {.sensor = -1}, {.sensor = 1}, {.sensor = 2}});
   EXPECT_EQ(problem.clock_reference, 1U);
   EXPECT_TRUE(layout_of(problem, {{.sensor = 0}}).has_clocks);
   InsFit fit;

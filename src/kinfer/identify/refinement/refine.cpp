@@ -50,7 +50,7 @@ RefinementFit fit_full_bandwidth(const RefinementTask& task, RefinementSetup set
   fitted.setup.start.facts =
       initial_fact_unknowns(problem, layout_of(problem, fitted.setup.start.bodies), fitted.setup.start);
   start_from_excerpt(problem, fitted.setup.start, task.options, observer);
-  if (options.clocks == ClockTreatment::estimated) free_clocks(problem);
+  if (options.clocks == ClockTreatment::estimated) free_clocks(problem, fitted.setup.start.bodies);
   fitted.fit = fit_ins(problem, fitted.setup.start, task.options, observer);
   search_azimuths(task, fitted, observer);
   if (options.clocks == ClockTreatment::checked && clocks_are_doubtful(problem, fitted.fit, task.options.threads))
@@ -94,9 +94,12 @@ std::vector<MatrixXd> shifts_with_fast_motion(const RefinementTask& task, const 
   return shifts(fitted.fit.unknowns.bodies, all.fit.unknowns.bodies);
 }
 
-/// Whether a clock is wrong by so much that the caller will correct it and fit again.
-bool clocks_differ(const InsUnknowns& x) {
-  return std::ranges::any_of(x.errors, [](const InsErrors& e) { return std::abs(e.clock.offset) > max_clock_offset; });
+/// Whether a clock is wrong by so much, at some time, that the caller will correct it and fit again.
+bool clocks_differ(const InsProblem& problem, const InsUnknowns& x) {
+  const double half = 0.5 * (problem.grid.end() - problem.grid.begin);
+  return std::ranges::any_of(x.errors, [&](const InsErrors& e) {
+    return std::abs(e.clock.offset) + half * std::abs(e.clock.drift) > max_clock_offset;
+  });
 }
 
 /// Fits again without some windows; `fitted` then holds that fit.
@@ -190,7 +193,8 @@ Result<RefinementAttempt> refine_with(const InsRecording& recording, const Recor
   result.noise = recorded_noise(fitted.setup.problem, fitted.fit.cost);
   for (const InsMeasurements& sensor : fitted.setup.problem.sensors) result.noise_floor.push_back(sensor.noise_floor);
   ModelError model_error;
-  if (worst_misfit(fitted.setup.problem) > max_rigid_chain_misfit && !clocks_differ(fitted.fit.unknowns)) {
+  if (worst_misfit(fitted.setup.problem) > max_rigid_chain_misfit &&
+      !clocks_differ(fitted.setup.problem, fitted.fit.unknowns)) {
     LowFrequencyFit slow = fit_low_frequency(task, fitted, observer);
     fitted = std::move(slow.fitted);
     model_error = std::move(slow.error);

@@ -46,6 +46,10 @@ double trimmed_mean(std::vector<float> values) {
   return sum / static_cast<double>(kept - values.begin());
 }
 
+bool has_residuals(const InstrumentFit& fit) {
+  return std::ranges::any_of(fit.block, [](float value) { return std::isfinite(value); });
+}
+
 /// Ratio of residual noise to the instrument's own noise of each sensor, clamped near the median of the sensors:
 /// otherwise a fit may follow one sensor exactly and ignore another.
 std::vector<double> regularised(std::vector<double> estimated) {
@@ -55,20 +59,26 @@ std::vector<double> regularised(std::vector<double> estimated) {
   return estimated;
 }
 
-/// Of one instrument type of all sensors; `noise` and `fit` select it in InsNoise and SensorFit.
+/// Of one instrument type of all sensors that have residuals; those outside of the chain have none. `noise` and `fit`
+/// select it in InsNoise and SensorFit.
 void estimate_instrument_noise(std::vector<InsNoise>& all, const InsProblem& problem, const InsCost& cost,
                                double InsNoise::*noise, InstrumentFit SensorFit::*fit) {
+  std::vector<std::size_t> fitted;
   std::vector<double> estimated;
-  for (std::size_t s = 0; s < problem.sensors.size(); ++s)
+  for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
+    if (!has_residuals(cost.sensors[s].*fit)) continue;
+    fitted.push_back(s);
     estimated.push_back(problem.sensors[s].noise.*noise / problem.sensors[s].noise_floor.*noise *
                         std::sqrt(trimmed_mean((cost.sensors[s].*fit).block)));
+  }
   const std::vector<double> factors = regularised(estimated);
-  for (std::size_t s = 0; s < problem.sensors.size(); ++s)
-    all[s].*noise = factors[s] * problem.sensors[s].noise_floor.*noise;
+  for (std::size_t i = 0; i < fitted.size(); ++i)
+    all[fitted[i]].*noise = factors[i] * problem.sensors[fitted[i]].noise_floor.*noise;
 }
 
 std::vector<InsNoise> estimated_noise(const InsProblem& problem, const InsCost& cost) {
-  std::vector<InsNoise> estimated(problem.sensors.size());
+  std::vector<InsNoise> estimated;
+  for (const InsMeasurements& sensor : problem.sensors) estimated.push_back(sensor.noise);
   estimate_instrument_noise(estimated, problem, cost, &InsNoise::angular_velocity, &SensorFit::angular_velocity);
   estimate_instrument_noise(estimated, problem, cost, &InsNoise::force, &SensorFit::force);
   return estimated;

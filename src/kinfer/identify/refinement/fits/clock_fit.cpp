@@ -44,10 +44,10 @@ ResidualClock residual_clock(const InsFit& fit, const InsCovariance& covariance,
 /// A copy of the problem would hold an hour of measurements twice.
 class ScopedFreeClocks {
  public:
-  explicit ScopedFreeClocks(InsProblem& problem)
+  ScopedFreeClocks(InsProblem& problem, const InsBodies& bodies)
       : problem_(problem), prior_(problem.prior), reference_(problem.clock_reference) {
     for (const InsMeasurements& sensor : problem.sensors) noise_.push_back(sensor.noise);
-    free_clocks(problem);
+    free_clocks(problem, bodies);
   }
   ScopedFreeClocks(const ScopedFreeClocks&) = delete;
   ScopedFreeClocks& operator=(const ScopedFreeClocks&) = delete;
@@ -69,15 +69,17 @@ class ScopedFreeClocks {
 
 }  // namespace
 
-void free_clocks(InsProblem& problem) {
+void free_clocks(InsProblem& problem, const InsBodies& bodies) {
   problem.prior.clock_offset = clock_offset_sd;
   problem.prior.clock_drift = clock_drift_sd;
-  const auto most = std::ranges::max_element(problem.sensors, {}, squared_rotation);
-  problem.clock_reference = static_cast<std::size_t>(most - problem.sensors.begin());
+  const auto rotation = [&](const InsBody& body) {
+    return body.sensor < 0 ? -1.0 : squared_rotation(problem.sensors[static_cast<std::size_t>(body.sensor)]);
+  };
+  problem.clock_reference = static_cast<std::size_t>(std::ranges::max_element(bodies, {}, rotation)->sensor);
 }
 
 bool clocks_are_doubtful(InsProblem& problem, const InsFit& fit, int threads) {
-  const ScopedFreeClocks free(problem);
+  const ScopedFreeClocks free(problem, fit.unknowns.bodies);
   InsFit next{.unknowns = {}, .layout = layout_of(problem, fit.unknowns.bodies), .cost = {}};
   const InsSystem system(problem, next.layout, fit.unknowns, {}, threads);
   const auto step = system.solve();
@@ -94,7 +96,7 @@ bool clocks_are_doubtful(InsProblem& problem, const InsFit& fit, int threads) {
 }
 
 void refit_with_free_clocks(InsProblem& problem, InsFit& fit, const InsFitOptions& options, const Observer& observer) {
-  ScopedFreeClocks free(problem);
+  ScopedFreeClocks free(problem, fit.unknowns.bodies);
   InsFit trial = fit_ins(problem, fit.unknowns, options, observer);
   const auto covariance = covariance_of(problem, trial.layout, trial.unknowns, options.threads);
   if (!covariance) return;

@@ -8,8 +8,8 @@
 
 namespace kinfer::identify {
 
-/// Gives every sensor's clock a finite prior relative to the clock of the sensor that rotates most.
-void free_clocks(InsProblem& problem);
+/// Gives every sensor's clock a finite prior relative to the clock of that of the bodies' sensors which rotates most.
+void free_clocks(InsProblem& problem, const InsBodies& bodies);
 
 /// Whether one step of the fit with free clocks moves a clock significantly, given noise and model errors.
 bool clocks_are_doubtful(InsProblem& problem, const InsFit& fit, int threads);

@@ -33,6 +33,27 @@ std::array<double, 2> point_sd(ConstMatrixRef covariance, Index first, const Vec
   return sd;
 }
 
+/// A point that is stated at another place of its axis, p − along · z: first unknowns of point and frame.
+struct MovedPoint {
+  Index point = 0, turn = 0;
+  const Mat3& frame;
+  double along = 0.0;  ///< [m]
+};
+
+/// Likewise: it moves with the axis, z by −y and x of the frame for rotations about x and y.
+std::array<double, 2> moved_point_sd(ConstMatrixRef covariance, const MovedPoint& moved, const Vec3& axis) {
+  std::array<double, 2> sd{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Vec3 direction = perpendicular_directions(axis)[i];
+    VectorXd by = VectorXd::Zero(covariance.cols());
+    by.segment<3>(moved.point) = direction;
+    by[moved.turn] = moved.along * direction.dot(moved.frame.col(1));
+    by[moved.turn + 1] = -moved.along * direction.dot(moved.frame.col(0));
+    sd[i] = sd_of(by.dot(covariance * by));
+  }
+  return sd;
+}
+
 /// Sd of a frame's z axis: rotations about the frame's x and y, `first` and the next unknown, move z along −y and x.
 std::array<double, 2> axis_sd(ConstMatrixRef covariance, Index first, const Mat3& frame) {
   std::array<double, 2> sd{};
@@ -84,8 +105,9 @@ void set_revolute(JointEstimate& joint, const InsBody& body, ConstMatrixRef cova
   const Mat3 &a = body.parent_R_axis, &b = body.child_R_axis;
   joint.sd.axis_in_parent = axis_sd(covariance, parent_turn, a);
   joint.sd.axis_in_child = axis_sd(covariance, child_turn, b);
-  joint.sd.point_in_parent = point_sd(covariance, in_parent, joint.axis_in_parent);
-  joint.sd.point_in_child = point_sd(covariance, in_child, joint.axis_in_child);
+  const double along = b.col(2).dot(body.point_in_child);
+  joint.sd.point_in_parent = moved_point_sd(covariance, {in_parent, parent_turn, a, along}, joint.axis_in_parent);
+  joint.sd.point_in_child = moved_point_sd(covariance, {in_child, child_turn, b, along}, joint.axis_in_child);
   VectorXd slide(10);  // derivative of axis·p − axis·c
   const Vec3 &p = body.point_in_parent, &c = body.point_in_child;
   slide << -p.dot(a.col(1)), p.dot(a.col(0)), c.dot(b.col(1)), -c.dot(b.col(0)), a.col(2), -b.col(2);
@@ -95,10 +117,10 @@ void set_revolute(JointEstimate& joint, const InsBody& body, ConstMatrixRef cova
 }
 
 /// A prismatic joint's axis passes through the child's origin by convention, so no point in the child is estimated.
-void set_prismatic(JointEstimate& joint, const InsBody& body, ConstMatrixRef covariance) {
+void set_prismatic(JointEstimate& joint, const InsBody& body, double zero, ConstMatrixRef covariance) {
   joint.sd.axis_in_parent = axis_sd(covariance, 0, body.parent_R_axis);
   joint.sd.axis_in_child = axis_sd(covariance, 2, body.child_R_axis);
-  joint.sd.point_in_parent = point_sd(covariance, 5, joint.axis_in_parent);
+  joint.sd.point_in_parent = moved_point_sd(covariance, {5, 0, body.parent_R_axis, -zero}, joint.axis_in_parent);
   joint.sd.along_axis = sd_of(joint.axis_in_parent.dot(covariance.block<3, 3>(5, 5) * joint.axis_in_parent));
   for (const Vec3& direction : uncertain_directions(covariance.block<3, 3>(5, 5)))
     if (std::abs(direction.dot(joint.axis_in_parent)) < 0.7) joint.unobservable_in_parent.push_back(direction);
@@ -214,7 +236,7 @@ RefinedJoint refined_joint(EstimatedJointType type, std::span<const InsBody> bod
   if (body.motion == JointMotion::revolute)
     set_revolute(joint, body, covariance);
   else if (body.motion == JointMotion::prismatic)
-    set_prismatic(joint, body, covariance);
+    set_prismatic(joint, body, zero.front(), covariance);
   else
     set_rigid(joint, body, covariance);
   result.solution.precision.sd = joint.sd;
