@@ -309,7 +309,8 @@ Result<Identification> identify_diagnosed(const InsRecording& log, LogDiagnosis 
     append(result.notes, assumptions_of(session.recording()));
     result.order = std::move(order.evidence);
     result.clocks = std::move(clocks.clocks);
-    if (geometry.tracking) result.tracking = complete(std::move(*geometry.tracking), result, session.recording());
+    if (geometry.tracking)
+      result.tracking = complete(std::move(*geometry.tracking), result, session.recording(), options.refine.common);
     judge_given_links(result, log, options, rng, observer);
     draw_conclusions(result, ordered, connections);
     return result;

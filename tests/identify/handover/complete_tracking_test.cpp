@@ -82,19 +82,29 @@ double bias_error(const TrackingModel& model) {
 }
 
 TEST(FilteredBiases, ABiasCommonToAllSensorsOfAMovingMachineIsThatWhichGravityShows) {
-  const TrackingModel model = hinge(0.017, 1e-4), corrected = with_filtered_biases(model, turning_sensors());
+  const TrackingModel model = hinge(0.017, 1e-4), corrected = with_filtered_biases(model, turning_sensors(), {});
   EXPECT_GT(bias_error(model), 0.069);
   EXPECT_LT(bias_error(corrected), 2e-3);
   EXPECT_LT(std::sqrt(corrected.covariance(5, 5)), 2.5e-3);
 }
 
+TEST(FilteredBiases, AreInTheUnitsOfInstrumentsWhoseCommonFactorTheRecordingWasDividedBy) {
+  InsCommonScales common;
+  common.gyroscope.factor = 2.0;
+  TrackingModel model = hinge(0.034, 2e-4);
+  for (TrackingSensor& sensor : model.sensors) sensor.gyroscope_bias += true_bias;
+  const TrackingModel corrected = with_filtered_biases(model, turning_sensors(), common);
+  for (const TrackingSensor& sensor : corrected.sensors)
+    EXPECT_LT((sensor.gyroscope_bias - 2.0 * true_bias).cwiseAbs().maxCoeff(), 4e-3);
+}
+
 TEST(FilteredBiases, WhatTheFitDeterminedStays) {
-  const TrackingModel model = hinge(2e-5, 1e-5), corrected = with_filtered_biases(model, turning_sensors());
+  const TrackingModel model = hinge(2e-5, 1e-5), corrected = with_filtered_biases(model, turning_sensors(), {});
   EXPECT_NEAR(bias_error(corrected), bias_error(model), 2e-5);
 }
 
 TEST(FilteredBiases, TheGeometryKeepsItsCovariance) {
-  const TrackingModel model = hinge(0.017, 1e-4), corrected = with_filtered_biases(model, turning_sensors());
+  const TrackingModel model = hinge(0.017, 1e-4), corrected = with_filtered_biases(model, turning_sensors(), {});
   const MatrixXd change = corrected.covariance - model.covariance;
   EXPECT_LT(change.topLeftCorner(3, 3).norm(), 1e-12);
   EXPECT_GT(symmetric_eigen(corrected.covariance).values.minCoeff(), -1e-12);
@@ -103,7 +113,7 @@ TEST(FilteredBiases, TheGeometryKeepsItsCovariance) {
 TEST(FilteredBiases, AStillBaseKeepsThoseOfTheFit) {
   TrackingModel model = hinge(0.017, 1e-4);
   model.base.moved = false;
-  EXPECT_EQ(bias_error(with_filtered_biases(model, turning_sensors())), bias_error(model));
+  EXPECT_EQ(bias_error(with_filtered_biases(model, turning_sensors(), {})), bias_error(model));
 }
 
 }  // namespace

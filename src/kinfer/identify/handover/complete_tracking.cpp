@@ -55,7 +55,8 @@ double* value_of(TrackingModel& model, const TrackingParameter& parameter) {
 
 }  // namespace
 
-TrackingModel with_filtered_biases(TrackingModel model, const InsRecording& recording) {
+TrackingModel with_filtered_biases(TrackingModel model, const InsRecording& recording, const InsCommonScales& common) {
+  const double factor = common.gyroscope.factor;  // by which the recording was divided and the model was not
   if (!model.base.moved || model.prior.bias.rate <= 0.0) return model;
   const Index rows = 3 * static_cast<Index>(model.sensors.size()), size = static_cast<Index>(model.parameters.size());
   VectorXd innovation(rows);
@@ -63,10 +64,10 @@ TrackingModel with_filtered_biases(TrackingModel model, const InsRecording& reco
   for (std::size_t s = 0; s < model.sensors.size(); ++s) {
     const auto sensor = std::ranges::find(recording.sensors, model.sensors[s].name, &InsSensor::name);
     if (sensor == recording.sensors.end()) return model;
-    const FilteredBias found = filtered_bias(recording, *sensor, model.prior.bias.rate);
+    const FilteredBias found = filtered_bias(recording, *sensor, model.prior.bias.rate / factor);
     const Index row = 3 * static_cast<Index>(s);
-    innovation.segment<3>(row) = found.bias - model.sensors[s].gyroscope_bias;
-    noise.block<3, 3>(row, row) = found.covariance;
+    innovation.segment<3>(row) = factor * found.bias - model.sensors[s].gyroscope_bias;
+    noise.block<3, 3>(row, row) = factor * factor * found.covariance;
   }
   for (Index i = 0; i < size; ++i) {
     const TrackingParameter& parameter = model.parameters[static_cast<std::size_t>(i)];
@@ -85,8 +86,9 @@ TrackingModel with_filtered_biases(TrackingModel model, const InsRecording& reco
   return model;
 }
 
-TrackingModel complete(TrackingModel model, const Identification& found, const InsRecording& recording) {
-  model = with_limited_deviations(with_filtered_biases(std::move(model), recording));
+TrackingModel complete(TrackingModel model, const Identification& found, const InsRecording& recording,
+                       const InsCommonScales& common) {
+  model = with_limited_deviations(with_filtered_biases(std::move(model), recording, common));
   for (TrackingSensor& sensor : model.sensors) {
     const auto clock = std::ranges::find(found.clocks, sensor.name, &SensorClockEstimate::sensor);
     if (clock == found.clocks.end()) continue;
