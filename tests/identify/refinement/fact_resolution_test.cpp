@@ -55,6 +55,15 @@ TEST(ResolveFacts, NamesAreSensorsJointsOrPlaces) {
   EXPECT_EQ(all->places[1].sd, InsUnknownPoint{}.sd) << "unknown but for the weak prior";
 }
 
+TEST(ResolveFacts, ABallJointHasACentre) {
+  NamedMachine machine;
+  machine.bodies[1] = spherical_body(0, 2, Mat3::Identity());
+  const auto all = machine.resolved(taped("base", "base-boom"));
+  ASSERT_TRUE(all) << all.error().what;
+  EXPECT_EQ(all->tapes[0].to.kind, InsPoint::Kind::joint_centre);
+  EXPECT_EQ(all->tapes[0].to.body, 1);
+}
+
 TEST(ResolveFacts, ATimeIsTheMiddleOfItsWindowAndWithoutOneTheBegin) {
   const NamedMachine machine;
   EXPECT_DOUBLE_EQ(machine.resolved(taped("base", "boom"))->tapes[0].at, 10.0);

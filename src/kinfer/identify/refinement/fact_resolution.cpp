@@ -51,10 +51,10 @@ struct FactResolver {
       joints.push_back(joint_name(static_cast<int>(b)));
       if (joints.back() != name) continue;
       const int first = first_body_of_joint(static_cast<int>(b));
-      if (bodies[b].motion != JointMotion::revolute)
+      if (bodies[b].motion == JointMotion::fixed || bodies[b].motion == JointMotion::prismatic)
         return error("{}: only joints that rotate have a point for a tape measurement", name);
-      const bool is_revolute = first == static_cast<int>(b);
-      return InsPoint{is_revolute ? InsPoint::Kind::joint_axis : InsPoint::Kind::joint_centre, first};
+      const bool has_one_axis = bodies[b].motion == JointMotion::revolute && first == static_cast<int>(b);
+      return InsPoint{has_one_axis ? InsPoint::Kind::joint_axis : InsPoint::Kind::joint_centre, first};
     }
     return error("no sensor, joint or [[place]] is called \"{}\"; the joints are {}", name, fmt::join(joints, ", "));
   }
