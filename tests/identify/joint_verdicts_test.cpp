@@ -177,5 +177,14 @@ TEST(GivenLinks, AreWrongOnlyIfTheWholeChainPredictsWorse) {
   EXPECT_EQ(as_good.findings[0].severity, Severity::note);
 }
 
+TEST(GivenLinks, AreComparedBySensorsThatBothChainsHave) {
+  Identification given = with_residual(0.06), with_another = with_residual(0.6);
+  for (Identification* all : {&given, &with_another})
+    all->motion.traces.push_back({.sensor = "c", .quantity = TraceQuantity::acceleration, .rms_holdout = 8.0});
+  weigh_given_links(given, with_residual(0.05)), weigh_given_links(with_another, with_residual(0.05));
+  EXPECT_FALSE(contradicts_given_links(given)) << "the free chain has no sensor c";
+  EXPECT_TRUE(contradicts_given_links(with_another));
+}
+
 }  // namespace
 }  // namespace kinfer
