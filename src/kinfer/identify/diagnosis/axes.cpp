@@ -288,7 +288,8 @@ std::optional<WantedAxes> axes_wanted_by_neighbours(const InsRecording& recordin
   double most = min_neighbours_axes_gain;
   for (const std::size_t s : unconnected) {
     const InsSensor& sensor = recording.sensors[s];
-    const AxesChoice choice = choose_axes(recording, s, all_maps(sensor), threads);
+    const InsRecording excerpt = busiest_minute(recording, s);  // 48 copies of an hour would take gigabytes
+    const AxesChoice choice = choose_axes(excerpt, s, all_maps(excerpt.sensors[s]), threads);
     if (choice.gain() < most) continue;
     most = choice.gain();
     const bool is_of_gyroscope = signed_permutations()[choice.candidate].determinant() < 0.0 ||

@@ -16,25 +16,6 @@ namespace {
 
 constexpr double longest_excerpt = 60.0;  // [s] more rows cost time and change no choice
 
-/// The minute of the recording in which the sensor rotates most.
-InsRecording busiest_minute(const InsRecording& recording, std::size_t sensor) {
-  const InsSensor& of = recording.sensors[sensor];
-  const auto time = recording.time(of);
-  if (time.empty() || time.back() - time.front() <= longest_excerpt) return recording;
-  double most = -1.0, begin = time.front(), sum = 0.0;
-  std::size_t first = 0;
-  const auto square_rate = [&](std::size_t row) {
-    const Vec3 rate = of.angular_velocity.at(row);
-    return rate.allFinite() ? rate.squaredNorm() : 0.0;
-  };
-  for (std::size_t row = 0; row < time.size(); ++row) {
-    sum += square_rate(row);
-    while (time[row] - time[first] > longest_excerpt) sum -= square_rate(first++);
-    if (sum > most) most = sum, begin = time[first];
-  }
-  return within(recording, begin, begin + longest_excerpt);
-}
-
 /// Fits of the pairs of all but one of the first `sensors` segments, and of these with each candidate behind them.
 std::vector<PairFit> fit_candidates(const RecordedMotion& motion, std::size_t sensors, std::size_t replaced,
                                     const std::vector<std::size_t>& rows, HeadingReference headings, int threads) {
@@ -72,6 +53,24 @@ std::vector<double> tree_lengths(const InsRecording& recording, std::size_t sens
 }
 
 }  // namespace
+
+InsRecording busiest_minute(const InsRecording& recording, std::size_t sensor) {
+  const InsSensor& of = recording.sensors[sensor];
+  const auto time = recording.time(of);
+  if (time.empty() || time.back() - time.front() <= longest_excerpt) return recording;
+  double most = -1.0, begin = time.front(), sum = 0.0;
+  std::size_t first = 0;
+  const auto square_rate = [&](std::size_t row) {
+    const Vec3 rate = of.angular_velocity.at(row);
+    return rate.allFinite() ? rate.squaredNorm() : 0.0;
+  };
+  for (std::size_t row = 0; row < time.size(); ++row) {
+    sum += square_rate(row);
+    while (time[row] - time[first] > longest_excerpt) sum -= square_rate(first++);
+    if (sum > most) most = sum, begin = time[first];
+  }
+  return within(recording, begin, begin + longest_excerpt);
+}
 
 double tree_length(const InsRecording& recording, int threads) {
   const auto ordered = order_segments(recording, {}, {}, threads);

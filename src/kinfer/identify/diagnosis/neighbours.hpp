@@ -11,6 +11,9 @@ namespace kinfer::identify {
 /// [nats per row] of the segment tree; infinite if there is none.
 double tree_length(const InsRecording& recording, int threads);
 
+/// The minute of a recording in which a sensor rotates most.
+InsRecording busiest_minute(const InsRecording& recording, std::size_t sensor);
+
 /// Other axes of one sensor.
 struct AxesCandidate {
   InsSensor sensor;             ///< with these axes

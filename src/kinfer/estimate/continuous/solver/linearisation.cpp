@@ -200,10 +200,10 @@ std::vector<VectorXd> InsLinearisation::residuals(const TimeSegment& time_segmen
   return all;
 }
 
-VectorXd InsLinearisation::spline_product(const TimeSegment& time_segment,
-                                          const std::vector<VectorXd>& residuals) const {
-  SegmentWalker walk(problem_, layout_, x_, LinearisationScope::spline_only);
-  const Index width = layout_.spline_dimensions;
+VectorXd spline_product(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
+                        const TimeSegment& time_segment, const std::vector<VectorXd>& residuals) {
+  SegmentWalker walk(problem, layout, x, LinearisationScope::spline_only);
+  const Index width = layout.spline_dimensions;
   VectorXd product = VectorXd::Zero((time_segment.end - time_segment.first + spline_order - 1) * width);
   std::size_t next = 0;
   for (Index k = time_segment.first; k < time_segment.end; ++k) {

@@ -43,10 +43,6 @@ class InsLinearisation {
   /// of a sensor.
   std::vector<VectorXd> residuals(const TimeSegment& time_segment) const;
 
-  /// Derivatives by a time segment's spline coefficients, transposed, times residuals of the same rows. Not robustly
-  /// weighted.
-  VectorXd spline_product(const TimeSegment& time_segment, const std::vector<VectorXd>& residuals) const;
-
  private:
   void add_spline_prior(BandSegmentSum& sum, const TimeSegment& time_segment) const;
   void add_facts(BandSegmentSum& sum, const TimeSegment& time_segment) const;
@@ -58,5 +54,10 @@ class InsLinearisation {
   const InsUnknowns& x_;
   std::vector<InsFactRows> facts_;
 };
+
+/// Derivatives of the measurements by a time segment's spline coefficients at x, transposed, times residuals of the
+/// same rows. Not robustly weighted.
+VectorXd spline_product(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
+                        const TimeSegment& time_segment, const std::vector<VectorXd>& residuals);
 
 }  // namespace kinfer

@@ -46,15 +46,17 @@ struct CoupledSegment {
   bool is_positive_definite = false;
 };
 
-CoupledSegment coupled_segment(const InsLinearisation& here, const std::vector<InsLinearisation>& places,
+CoupledSegment coupled_segment(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
+                               const InsLinearisation& here, const std::vector<InsUnknowns>& places,
                                const TimeSegment& intervals) {
   BandSegmentSum splines = here.sum_back_substituted(intervals);
   BandSegmentSum sum(splines.width, splines.reach, static_cast<Index>(places.size()), splines.spans);
   sum.band = std::move(splines.band);
   const std::vector<VectorXd> residuals = here.residuals(intervals);
-  const VectorXd reference = here.spline_product(intervals, residuals);
-  for (Index row = sum.end(); const InsLinearisation& place : places)
-    sum.outer.row(row++) = (place.spline_product(intervals, residuals) - reference).transpose() / step;
+  const VectorXd reference = spline_product(problem, layout, x, intervals, residuals);
+  for (Index row = sum.end(); const InsUnknowns& place : places)
+    sum.outer.row(row++) =
+        (spline_product(problem, layout, place, intervals, residuals) - reference).transpose() / step;
   const BandSegment band(std::move(sum));
   return {band.condensed(), band.border_matrix(), band.is_positive_definite()};
 }
@@ -66,15 +68,13 @@ NoiseInformation noise_information(const InsProblem& problem, const InsLayout& l
   NoiseInformation result{joint_parameters(layout, x.bodies), {}, static_cast<double>(problem.grid.intervals)};
   const std::vector<Index>& parameters = result.parameters;
   const auto count = static_cast<Index>(parameters.size());
-  std::vector<InsUnknowns> moved_to;
-  for (const Index parameter : parameters) moved_to.push_back(moved(problem, layout, x, parameter));
-  std::vector<InsLinearisation> places;
-  for (const InsUnknowns& place : moved_to) places.emplace_back(problem, layout, place);
+  std::vector<InsUnknowns> places;
+  for (const Index parameter : parameters) places.push_back(moved(problem, layout, x, parameter));
   const InsLinearisation here(problem, layout, x);
   const std::vector<TimeSegment> segments = time_segments_of(problem.grid);
   std::vector<CoupledSegment> coupled(segments.size());
   parallel_for(segments.size(), threads,
-               [&](std::size_t i) { coupled[i] = coupled_segment(here, places, segments[i]); });
+               [&](std::size_t i) { coupled[i] = coupled_segment(problem, layout, x, here, places, segments[i]); });
   BorderedBand ends((spline_order - 1) * layout.spline_dimensions, 2, count);
   MatrixXd border = MatrixXd::Zero(count, count);
   for (const CoupledSegment& segment : coupled) {
