@@ -64,7 +64,7 @@ TEST(MountCompliance, RigidMountsAreReportedAsSuchAndKeepTheirIntervals) {
   for (const InsErrors& errors : found.fit.unknowns.errors) EXPECT_LT(9.81 * errors.tilt.cwiseAbs().maxCoeff(), 0.02);
   const Lever middle = middle_of(found);
   EXPECT_NEAR(middle.length, true_middle(chain), 2.5 * middle.sd);
-  EXPECT_LT(middle.sd, 6e-3);
+  EXPECT_LT(middle.sd, 6.5e-3);
 }
 
 TEST(MountCompliance, UnobservableCompliancesAreAssumedToBeLikeTheObservableOnes) {

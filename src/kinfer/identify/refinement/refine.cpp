@@ -199,6 +199,7 @@ Result<RefinementAttempt> refine_with(const InsRecording& recording, const Recor
     fitted = std::move(slow.fitted);
     model_error = std::move(slow.error);
     result.noise = std::move(slow.noise);
+    result.noise_floor = std::move(slow.noise_floor);
     result.cutoff = slow.cutoff;
   }
   measure_azimuths(task, fitted);

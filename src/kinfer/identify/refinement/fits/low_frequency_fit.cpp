@@ -115,7 +115,7 @@ LowFrequencyFit select_cutoff(const RefinementTask& task, const RefinementFit& f
     auto shift = shifts(now.fit.unknowns.bodies, wider.fit.unknowns.bodies);
     const double sum = log_uncertainty(task, now, shift);
     if (best && sum >= least_uncertainty) break;
-    best = LowFrequencyFit{now, cutoffs[i], {std::move(shift), {}}, {}};
+    best = LowFrequencyFit{now, cutoffs[i], {std::move(shift), {}}, {}, {}};
     least_uncertainty = sum;
     wider = std::move(now);
   }
@@ -138,8 +138,10 @@ LowFrequencyFit fit_low_frequency(const RefinementTask& task, const RefinementFi
         setup.problem.prior.gyroscope_scale = full_bandwidth.setup.problem.prior.gyroscope_scale;
         setup.problem.prior.accelerometer_scale = full_bandwidth.setup.problem.prior.accelerometer_scale;
       });
-  for (const InsMeasurements& sensor : full_bandwidth.setup.problem.sensors)
+  for (const InsMeasurements& sensor : full_bandwidth.setup.problem.sensors) {
     low_frequency.noise.push_back(sensor.noise);
+    low_frequency.noise_floor.push_back(sensor.noise_floor);
+  }
   return low_frequency;
 }
 

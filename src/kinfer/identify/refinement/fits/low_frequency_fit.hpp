@@ -12,9 +12,9 @@ namespace kinfer::identify {
 /// Result of the fit of the low-frequency motion.
 struct LowFrequencyFit {
   RefinementFit fitted;
-  double cutoff = 0.0;          ///< [Hz] upper limit of the passband
-  ModelError error;             ///< shifts at √2 times the cutoff and with rigid mounts; mount deflection
-  std::vector<InsNoise> noise;  ///< of each sensor at full bandwidth, on knots that are fine enough for it
+  double cutoff = 0.0;  ///< [Hz] upper limit of the passband
+  ModelError error;     ///< shifts at √2 times the cutoff and with rigid mounts; mount deflection
+  std::vector<InsNoise> noise, noise_floor;  ///< of each sensor at full bandwidth, on knots that are fine enough for it
 };
 
 /// After a fit at full bandwidth: the chain from the low-frequency motion. Of several cutoffs, that of least
