@@ -4,12 +4,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "calibrate/functions/nominal_fits.hpp"
 #include "calibrate/terms/simulated_selection.hpp"
 #include "kinfer/calibrate/calibrate.hpp"
 #include "kinfer/calibrate/functions/field_problem.hpp"
+#include "kinfer/calibrate/parameters/parameter_sets.hpp"
+#include "kinfer/calibrate/terms/holdout_errors.hpp"
 #include "kinfer/estimate/poses/noise_level.hpp"
 #include "kinfer/estimate/poses/pose_normal_equations.hpp"
 #include "kinfer/geometry/statistics.hpp"
@@ -83,6 +86,41 @@ TEST(DisplacementFields, AreNotFoundInPosesWhateverTheNoiseOfTheirOrientations) 
       EXPECT_TRUE(c.estimate.chain.field.empty())
           << better << " " << poses << ": " << words::reason(step_with(c, Term::displacement_field));
     }
+}
+
+/// Whether one of the field's inducing points is at the joint positions of one of these rows.
+bool has_seen(const DisplacementField& field, const PoseSet& data, const std::vector<int>& rows) {
+  return std::ranges::any_of(rows, [&](int row) {
+    return (field.points.colwise() - data.joints.col(row)).colwise().norm().minCoeff() < 1e-9;
+  });
+}
+
+TEST(DisplacementFields, OfHeldOutRowsHaveNotSeenTheseHoweverFewTheOthersAre) {
+  const PoseSet data = displaced_readings(nominal_robot(), 24);
+  const Estimate geometry = geometry_of(data);
+  const Estimate fit =
+      fit_with_field(find_field(geometry, data, tracker).chain, geometry.parameters, data, tracker, {});
+  std::vector<Split> splits(3);
+  for (int row = 0; row < 24; ++row)
+    for (int k = 0; k < 3; ++k) (row % 3 == k ? splits[k].holdout : splits[k].train).push_back(row);
+  const CalibrationTask task{nominal_robot(), {}, tracker, data};
+  const HoldoutErrors held_out = cross_validate(fit, geometry.parameters, data, splits, task, 1);
+  for (int k = 0; k < 3; ++k) {
+    const DisplacementField& field = held_out.split_fits[k].chain.field;
+    EXPECT_FALSE(field.empty());
+    EXPECT_FALSE(has_seen(field, data, splits[k].holdout)) << k;
+  }
+}
+
+/// That of an earlier calibration has seen none of the rows, and few of them are no reason to give it up.
+TEST(DisplacementFields, OfAnEarlierCalibrationAreKeptWhereRowsAreFew) {
+  const PoseSet many = displaced_readings(nominal_robot(), 100);
+  const Estimate geometry = geometry_of(many);
+  const Chain earlier = find_field(geometry, many, tracker).chain;
+  const PoseSet few = displaced_readings(nominal_robot(), 10, 9);
+  const CalibrationTask task{earlier, {}, tracker, few};
+  const Estimate fit = fit_rows(earlier, joint_offset_parameters(earlier, few, {}), few, task, {});
+  EXPECT_EQ(fit.chain.field.coefficients, earlier.field.coefficients);
 }
 
 /// A small problem, and the same by matrices of all its residuals.

@@ -243,7 +243,7 @@ std::vector<HeldOutResiduals> residuals_of_regions(const EvaluationInputs& evalu
     const PoseSet train = select(data, splits[i].train), rest = select(data, splits[i].holdout);
     if (train.points.empty() || rest.points.empty()) return;
     const Estimate fit =
-        fit_with_functions(estimate.chain, estimate.parameters, train, evaluated.instrument,
+        fit_with_functions(estimate.chain, evaluated.nominal, estimate.parameters, train, evaluated.instrument,
                            {.initial_guess = InitialGuess::near_optimum, .detail = Detail::numbers_only});
     of_split[i] = residuals_beside(fit, train, rest, evaluated.instrument, region);
   });

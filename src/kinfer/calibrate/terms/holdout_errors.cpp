@@ -15,7 +15,8 @@ namespace kinfer::calibrate {
 
 Estimate fit_rows(const Chain& start, const ParameterSet& set, const PoseSet& rows, const CalibrationTask& task,
                   const BundleOptions& options, const Observer& observer) {
-  return fit_with_functions(start, restricted_to_data(set, rows), rows, task.instrument, options, observer);
+  return fit_with_functions(start, task.nominal, restricted_to_data(set, rows), rows, task.instrument, options,
+                            observer);
 }
 
 HoldoutErrors cross_validate(const Estimate& fit, const ParameterSet& set, const PoseSet& rows,
