@@ -109,6 +109,23 @@ TEST(Compensate, AnInstrumentsWorldIsDistinguishedFromASmallBaseError) {
   EXPECT_EQ(express_in_frames(far, nominal, CompensationFrames::robot).base.xyz, nominal.base.xyz);
 }
 
+/// A robot that hangs on a wall of the instrument's world yields to a weight that pulls along the wall.
+TEST(Compensate, InTheRobotsFramesGravityStaysWhereTheRobotFeelsIt) {
+  const Chain nominal = er20();
+  Chain corrected = with_table3_errors(nominal);
+  corrected.joints[1].compliance = corrected.joints[2].compliance = 2e-6;
+  corrected.masses = {{.joint = 2, .com = Vec3(0.2, 0.0, 0.1), .mass = 80.0}};
+  corrected.base = Frame::from_pose(Pose::from_xyz_rpy({1.2, -2.5, 0.35}, {90.0 * degree, 0.02, 2.3}));
+  const Chain expressed = express_in_frames(corrected, nominal, CompensationFrames::robot);
+  const Pose moved = nominal.base.pose() * corrected.base.pose().inverse();
+  const MatrixXd q = measured(nominal, paper2_poses(10, noise_free)).joints;
+  for (Eigen::Index i = 0; i < q.cols(); ++i) {
+    const Pose found = forward(expressed, q.col(i)), expected = moved * forward(corrected, q.col(i));
+    EXPECT_LT((found.position - expected.position).norm(), 1e-12) << i;
+    EXPECT_LT(angle_between(found.rotation, expected.rotation), 1e-7) << i;
+  }
+}
+
 TEST(Compensate, SameJointPositionsFor12And7Threads) {
   const Chain nominal = er20(), real = with_table3_errors(nominal);
   const std::vector<ToolTarget> targets(9, {Vec3(1.0, 0.3, 0.8), std::nullopt});

@@ -68,6 +68,8 @@ CompensationFrames select_compensation_frames(const Chain& corrected, const Chai
 
 Chain express_in_frames(Chain corrected, const Chain& nominal, CompensationFrames frames) {
   if (frames == CompensationFrames::as_given) return corrected;
+  // Gravity is in the world that the base leaves: it stays what it is in the base, by which joints yield to loads.
+  corrected.gravity = nominal.base.pose().rotation * corrected.base.pose().rotation.transpose() * corrected.gravity;
   corrected.base = nominal.base;
   corrected.tool = nominal.tool;
   return corrected;
