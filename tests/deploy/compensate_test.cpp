@@ -109,6 +109,59 @@ TEST(Compensate, AnInstrumentsWorldIsDistinguishedFromASmallBaseError) {
   EXPECT_EQ(express_in_frames(far, nominal, CompensationFrames::robot).base.xyz, nominal.base.xyz);
 }
 
+/// A robot that yields to loads and grows when it is warm.
+Chain yielding_robot() {
+  Chain real = with_table3_errors(er20());
+  real.joints[1].compliance = real.joints[2].compliance = 2e-6;
+  real.joints[2].torque_compliance = 1e-6;
+  real.expansion = 1.2e-5, real.reference_temperature = 20.0;
+  return real;
+}
+
+PoseSet loaded_rows(const Chain& nominal) {
+  PoseSet rows = measured(nominal, paper2_poses(30, noise_free));
+  for (int row = 0; row < 30; ++row) {
+    rows.payload.push_back(row % 2 * 20.0);
+    rows.temperature.push_back(20.0 + row);
+  }
+  rows.torques = MatrixXd::Constant(6, 30, 50.0);
+  return rows;
+}
+
+TEST(Compensate, TheToolIsPutInPlaceUnderTheLoadOfEachRow) {
+  const Chain nominal = er20(), real = yielding_robot();
+  const PoseSet rows = loaded_rows(nominal);
+  const auto sent = compensate_joints(real, nominal, rows, 1),
+             unloaded = compensate_joints(real, nominal, rows.joints, 1);
+  std::vector<ToolTarget> targets;
+  for (int row = 0; row < 30; ++row) targets.push_back({forward(nominal, rows.joints.col(row)).position, std::nullopt});
+  const auto by_targets = compensate_targets(real, nominal, targets, rows.joints, 1, 1, std::nullopt, rows);
+  int reached = 0;
+  for (int row = 0; row < 30; ++row) {
+    const Load load = load_at(real, rows, row);
+    const Vec3 wanted = targets[row].position;
+    if (sent[row].status != InverseStatus::reached || by_targets[row].status != InverseStatus::reached) continue;
+    ++reached;
+    EXPECT_LT((forward(real, sent[row].q, load).position - wanted).norm(), 1e-8) << row;
+    EXPECT_LT((forward(real, by_targets[row].q, load).position - wanted).norm(), 1e-8) << row;
+    if (row > 0) EXPECT_GT((forward(real, unloaded[row].q, load).position - wanted).norm(), 1e-5) << row;
+  }
+  EXPECT_GT(reached, 25);
+}
+
+TEST(Compensate, RowsOfAnotherSetUpAreRefused) {
+  const Chain chain = er20();
+  PoseSet rows = measured(chain, paper2_poses(4, noise_free));
+  EXPECT_TRUE(expect_own_mounting(chain, rows));
+  rows.setups = {"first", "second"};
+  rows.setup = {0, 0, 0, 0};
+  EXPECT_TRUE(expect_own_mounting(chain, rows));
+  rows.setup = {0, 0, 1, 1};
+  const auto refused = expect_own_mounting(chain, rows);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().what.find("\"second\", another set-up or arm"), std::string::npos) << refused.error().what;
+}
+
 /// A robot that hangs on a wall of the instrument's world yields to a weight that pulls along the wall.
 TEST(Compensate, InTheRobotsFramesGravityStaysWhereTheRobotFeelsIt) {
   const Chain nominal = er20();

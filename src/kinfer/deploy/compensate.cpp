@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/deploy/compensate.hpp"
 
+#include <algorithm>
+
 #include "kinfer/base/expect.hpp"
 #include "kinfer/base/parallel.hpp"
+#include "kinfer/calibrate/start/fixtures.hpp"
 #include "kinfer/deploy/thresholds.hpp"
+#include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/estimate/poses/pose_uncertainty.hpp"
 #include "kinfer/kinematics/same_joints.hpp"
 #include "kinfer/motion/reach.hpp"
@@ -11,9 +15,9 @@
 namespace kinfer::deploy {
 namespace {
 
-InverseSolution solve_inverse(const Chain& chain, const ToolTarget& target, ConstVectorRef start) {
-  if (!target.rotation) return inverse_position(chain, target.position, start);
-  return inverse(chain, {*target.rotation, target.position}, start);
+InverseSolution solve_inverse(const Chain& chain, const ToolTarget& target, ConstVectorRef start, const Load& load) {
+  if (!target.rotation) return inverse_position(chain, target.position, start, {}, load);
+  return inverse(chain, {*target.rotation, target.position}, start, {}, load);
 }
 
 CompensatedJoints make_compensated(const InverseSolution& solution) {
@@ -47,13 +51,14 @@ MatrixXd nominal_postures(const Chain& nominal, const std::vector<ToolTarget>& t
 /// In the posture nearest to `preferred` that the chain can take: what the nominal robot reaches in one posture, the
 /// real one may reach only in another.
 CompensatedJoints compensate_in_any_posture(const Chain& corrected, const std::optional<PredictionModel>& prediction,
-                                            const ToolTarget& target, const VectorXd& preferred, std::uint64_t seed) {
+                                            const ToolTarget& target, const VectorXd& preferred, std::uint64_t seed,
+                                            const Load& load) {
   motion::ReachOptions options;
   options.choice = motion::PostureChoice::nearest;
   options.seed = seed;
   const Chain there = corrected_at(corrected, prediction, preferred);
   const VectorXd posture = motion::ReachSolver(there, options).solve(goal_of(target), preferred).postures.front().q;
-  return make_compensated(solve_inverse(corrected_at(corrected, prediction, posture), target, posture));
+  return make_compensated(solve_inverse(corrected_at(corrected, prediction, posture), target, posture, load));
 }
 
 }  // namespace
@@ -93,18 +98,42 @@ Result<CompensationModels> prepare_compensation(const Chain& corrected, const Ch
                             express_in_frames(prediction, used)};
 }
 
+Result<void> expect_own_mounting(const Chain& corrected, const PoseSet& rows) {
+  PoseSet groups;  // without measurements, whose fixtures do not matter here
+  groups.joints = rows.joints;
+  static_cast<RowGroups&>(groups) = rows;
+  KINFER_TRY(placed, calibrate::with_fixtures(corrected, groups));
+  const auto other = std::ranges::find_if(placed.data.mounting, [](int mounting) { return mounting >= 0; });
+  if (other == placed.data.mounting.end()) return {};
+  return error(
+      "rows name \"{}\", another set-up or arm than that of the model, whose base and tool are used for all rows: "
+      "leave these rows out",
+      placed.chain.mountings[static_cast<std::size_t>(*other)].name);
+}
+
 std::vector<CompensatedJoints> compensate_joints(const Chain& corrected, const Chain& nominal, const MatrixXd& q,
                                                  int threads, const std::optional<PredictionModel>& prediction) {
+  PoseSet rows;
+  rows.joints = q;
+  return compensate_joints(corrected, nominal, rows, threads, prediction);
+}
+
+std::vector<CompensatedJoints> compensate_joints(const Chain& corrected, const Chain& nominal, const PoseSet& given,
+                                                 int threads, const std::optional<PredictionModel>& prediction) {
+  const PoseSet rows = with_approach(given);
+  const MatrixXd& q = rows.joints;
   KINFER_EXPECT(q.rows() == dof(corrected) && q.rows() == dof(nominal), "{} joint positions for {} and {} joints",
                 q.rows(), dof(corrected), dof(nominal));
   std::vector<CompensatedJoints> list(q.cols());
   const bool full_pose = q.rows() >= thresholds::joints_for_full_pose;
   parallel_for(list.size(), threads, [&](std::size_t i) {
-    const VectorXd start = q.col(static_cast<Eigen::Index>(i));
-    const Pose wanted = forward(nominal, start);
+    const auto row = static_cast<Eigen::Index>(i);
+    const VectorXd start = q.col(row);
+    const Pose wanted = forward(nominal, start, load_at(nominal, rows, row));
     ToolTarget target{wanted.position, std::nullopt};
     if (full_pose) target.rotation = wanted.rotation;
-    list[i] = make_compensated(solve_inverse(corrected_at(corrected, prediction, start), target, start));
+    list[i] = make_compensated(
+        solve_inverse(corrected_at(corrected, prediction, start), target, start, load_at(corrected, rows, row)));
   });
   return list;
 }
@@ -112,16 +141,19 @@ std::vector<CompensatedJoints> compensate_joints(const Chain& corrected, const C
 std::vector<CompensatedJoints> compensate_targets(const Chain& corrected, const Chain& nominal,
                                                   const std::vector<ToolTarget>& targets, const MatrixXd& start,
                                                   int threads, std::uint64_t seed,
-                                                  const std::optional<PredictionModel>& prediction) {
+                                                  const std::optional<PredictionModel>& prediction,
+                                                  const PoseSet& loads) {
   const MatrixXd drawn = start.cols() > 0 ? MatrixXd() : nominal_postures(nominal, targets, threads, seed);
   std::vector<CompensatedJoints> list(targets.size());
   parallel_for(list.size(), threads, [&](std::size_t i) {
     const auto column = static_cast<Eigen::Index>(i);
     const VectorXd first =
-        start.cols() > 0 ? solve_inverse(nominal, targets[i], start.col(column)).q : VectorXd(drawn.col(column));
-    list[i] = make_compensated(solve_inverse(corrected_at(corrected, prediction, first), targets[i], first));
+        start.cols() > 0 ? solve_inverse(nominal, targets[i], start.col(column), load_at(nominal, loads, column)).q
+                         : VectorXd(drawn.col(column));
+    const Load load = load_at(corrected, loads, column);
+    list[i] = make_compensated(solve_inverse(corrected_at(corrected, prediction, first), targets[i], first, load));
     if (list[i].status == InverseStatus::reached || start.cols() > 0) return;
-    CompensatedJoints other = compensate_in_any_posture(corrected, prediction, targets[i], first, seed);
+    CompensatedJoints other = compensate_in_any_posture(corrected, prediction, targets[i], first, seed, load);
     if (other.status == InverseStatus::reached) list[i] = std::move(other);
   });
   return list;

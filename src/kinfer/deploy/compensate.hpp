@@ -13,6 +13,7 @@
 #include "kinfer/evidence/calibration/prediction_model.hpp"
 #include "kinfer/evidence/deployment/compensation.hpp"
 #include "kinfer/kinematics/parameters.hpp"
+#include "kinfer/measurement/pose_set.hpp"
 
 namespace kinfer::deploy {
 
@@ -47,9 +48,18 @@ Result<CompensationModels> prepare_compensation(const Chain& corrected, const Ch
                                                 std::optional<CompensationFrames> frames = std::nullopt,
                                                 const std::optional<PredictionModel>& prediction = std::nullopt);
 
-/// For each column of `q`: the joint positions at which the tool of `corrected` has the pose that `nominal` has at q.
+/// An error where rows name another set-up or arm than the chain's own: compensation uses the chain's base and tool.
+Result<void> expect_own_mounting(const Chain& corrected, const PoseSet& rows);
+
+/// For each row: the joint positions at which the tool of `corrected` has the pose that `nominal` has at the row's,
+/// both under the row's payload, temperature and torques and approached from the previous row.
 /// With fewer than six joints the orientation is not free, and only the tool point is corrected. With a prediction
 /// model the corrections fade outside the measured region.
+std::vector<CompensatedJoints> compensate_joints(const Chain& corrected, const Chain& nominal, const PoseSet& rows,
+                                                 int threads,
+                                                 const std::optional<PredictionModel>& prediction = std::nullopt);
+
+/// The same for the columns of `q`, without payload, at the reference temperature.
 std::vector<CompensatedJoints> compensate_joints(const Chain& corrected, const Chain& nominal, const MatrixXd& q,
                                                  int threads,
                                                  const std::optional<PredictionModel>& prediction = std::nullopt);
@@ -63,10 +73,12 @@ struct ToolTarget {
 /// Joint positions that bring the tool of `corrected` to each target. Each search starts from the nominal solution,
 /// which itself starts from `start` (dof x targets) where given; else it is the first posture inside the limits that
 /// motion::reach finds, which draws its starts from `seed`. What is not reached from there without a `start` is tried
-/// in the other postures of `corrected`, the nearest first.
+/// in the other postures of `corrected`, the nearest first. `loads`: payload, temperature and torques of each target;
+/// empty: none.
 std::vector<CompensatedJoints> compensate_targets(const Chain& corrected, const Chain& nominal,
                                                   const std::vector<ToolTarget>& targets, const MatrixXd& start,
                                                   int threads, std::uint64_t seed,
-                                                  const std::optional<PredictionModel>& prediction = std::nullopt);
+                                                  const std::optional<PredictionModel>& prediction = std::nullopt,
+                                                  const PoseSet& loads = {});
 
 }  // namespace kinfer::deploy

@@ -65,12 +65,14 @@ Result<std::vector<CompensatedJoints>> compensated_rows(const CompensateArgument
   const int threads = options.common.threads;
   if (!options.joints.empty()) {
     KINFER_TRY(set, read_pose_set(options.joints, chains.nominal, {}, RequiredContent::joints_only));
-    return deploy::compensate_joints(chains.corrected, chains.nominal, set.joints, threads, chains.prediction);
+    if (auto own = deploy::expect_own_mounting(chains.corrected, set); !own) return forward_error(own.error());
+    return deploy::compensate_joints(chains.corrected, chains.nominal, set, threads, chains.prediction);
   }
   KINFER_TRY(set, read_pose_set(options.targets, chains.nominal, {}, RequiredContent::targets));
+  if (auto own = deploy::expect_own_mounting(chains.corrected, set); !own) return forward_error(own.error());
   const MatrixXd start = set.joints.rows() > 0 ? set.joints : MatrixXd();
   return deploy::compensate_targets(chains.corrected, chains.nominal, targets_of(set), start, threads,
-                                    options.common.seed, chains.prediction);
+                                    options.common.seed, chains.prediction, set);
 }
 
 /// Reports the rows that are not reached, and why.
