@@ -161,6 +161,24 @@ TEST(Verdict, WithoutADataSheetHeldOutRowsAreComparedWithFittedOnes) {
   EXPECT_EQ(judge(c), CalibrationReason::overfitted) << "nothing was held out";
 }
 
+TEST(Verdict, AFaultStandsWithoutADataSheetToo) {
+  Calibration c = with_errors(0.0, 1e-4, 1e-4);
+  c.unknown_robot = UnknownRobotEvidence{};
+  EXPECT_EQ(judge(c), CalibrationReason::generalises);
+  c.contradiction = Contradiction{.kind = kind_of<PairDistance>, .contradicted = 15, .measured = 15, .error = 0.1};
+  expect_verdict(c, CalibrationReason::contradictory, Usability::do_not_use, "15 of 15 pairwise distances");
+  c.contradiction.reset();
+  c.findings.push_back({.kind = FindingKind::base_moved,
+                        .severity = Severity::fault,
+                        .rows = {3, 4, 5, 6, 7},
+                        .values = {{"distance_m", 0.076}}});
+  expect_verdict(c, CalibrationReason::fault_remains, Usability::do_not_use,
+                 "in rows 3-7 the tool is 76.0 mm elsewhere");
+  EXPECT_EQ(words::verdict(c).find("before"), std::string::npos) << "there is no earlier model: " << words::verdict(c);
+  c.findings.front().applied = true;
+  EXPECT_EQ(judge(c), CalibrationReason::generalises);
+}
+
 TEST(Verdict, OrientationsAreComparedWhereNoLengthWasMeasured) {
   Calibration c;
   c.before.orientation.holdout = {.mean = 1e-2, .rms = 1e-2, .n = 9};

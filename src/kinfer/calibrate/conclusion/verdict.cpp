@@ -40,9 +40,6 @@ bool nothing_has_moved(const Calibration& calibration) {
 CalibrationReason judge_against_nominal(const Calibration& calibration) {
   const ErrorStatistics &before = reported_errors(calibration, calibration.before),
                         &after = reported_errors(calibration, calibration.after);
-  if (calibration.least_motion <= thresholds::no_motion) return CalibrationReason::collapsed;
-  if (calibration.contradiction) return CalibrationReason::contradictory;
-  if (std::ranges::any_of(calibration.findings, invalidates_result)) return CalibrationReason::fault_remains;
   const bool unchanged = nothing_has_moved(calibration);
   if (!unchanged && !(after.mean < before.mean)) return CalibrationReason::no_improvement;
   if (!(final_errors(calibration).rms <= thresholds::same_solution_ratio * after.rms))
@@ -66,6 +63,9 @@ CalibrationReason judge_generalisation(const TrainHoldout& errors) {
 }  // namespace
 
 CalibrationReason judge(const Calibration& calibration) {
+  if (calibration.least_motion <= thresholds::no_motion) return CalibrationReason::collapsed;
+  if (calibration.contradiction) return CalibrationReason::contradictory;
+  if (std::ranges::any_of(calibration.findings, invalidates_result)) return CalibrationReason::fault_remains;
   return calibration.unknown_robot ? judge_generalisation(calibration.after.position)
                                    : judge_against_nominal(calibration);
 }

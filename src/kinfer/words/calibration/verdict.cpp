@@ -47,7 +47,7 @@ auto display_of(const Calibration& c) {
   return has_lengths(c) ? millimetres : degrees;
 }
 
-std::string figures(const Calibration& c) {
+std::string figures_beside_nominal(const Calibration& c) {
   const auto show = display_of(c);
   const ErrorStatistics &before = reported_errors(c, c.before), &after = reported_errors(c, c.after);
   return phrase("errors", "on poses that were not fitted {} {} off on average and {} at worst ({} and {} before)",
@@ -60,6 +60,10 @@ std::string figures_without_nominal(const Calibration& c) {
       "errors",
       "on poses that were not fitted the tool is {} off on average and {} at worst, on fitted ones {} on average",
       millimetres(holdout.mean), millimetres(holdout.max), millimetres(train.mean));
+}
+
+std::string figures(const Calibration& c) {
+  return c.unknown_robot ? figures_without_nominal(c) : figures_beside_nominal(c);
 }
 
 std::string unobserved_text(const UnobservedLengths& unobserved) {
@@ -185,7 +189,7 @@ VerdictText parts_of_verdict(const Calibration& c) {
   }
   return {phrase(name(c.usability), "{}", verdict_headline(c)),
           phrase(name(c.reason), "the robot was found without a data sheet"),
-          {figures_without_nominal(c)}};
+          {figures(c)}};
 }
 
 }  // namespace
