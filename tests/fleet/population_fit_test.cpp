@@ -115,5 +115,27 @@ TEST(PopulationFit, ParametersThatFewRobotsHaveAreLeftOut) {
   EXPECT_EQ(prior.names.front(), "theta2");
 }
 
+/// The same likelihood in tolerances from other nominal values: u = shift + scale · u'.
+ParameterInformation by_data_sheet(ParameterInformation robot, double nominal, double tolerance) {
+  const VectorXd shift = (nominal - robot.nominal.array()) / robot.tolerance.array(),
+                 scale = tolerance / robot.tolerance.array();
+  robot.vector = scale.cwiseProduct(robot.vector - robot.information * shift);
+  robot.information = scale.asDiagonal() * robot.information * scale.asDiagonal();
+  robot.nominal.setConstant(nominal), robot.tolerance.setConstant(tolerance);
+  return robot;
+}
+
+TEST(PopulationFit, DoesNotDependOnTheDataSheetsOfFurtherRobots) {
+  const Population truth;
+  std::vector<ParameterInformation> alike, mixed;
+  for (int k = 0; k < 60; ++k) {
+    alike.push_back(truth.robot(Rng(11).stream(k), 0.2));
+    mixed.push_back(k % 2 == 0 ? alike.back() : by_data_sheet(alike.back(), 0.3012, 2e-3));
+  }
+  const PopulationPrior expected = fit(alike), found = fit(mixed);
+  EXPECT_LT((found.mean - expected.mean).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_LT((found.covariance - expected.covariance).cwiseAbs().maxCoeff(), 1e-12);
+}
+
 }  // namespace
 }  // namespace kinfer

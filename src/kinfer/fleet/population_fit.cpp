@@ -25,10 +25,26 @@ struct Gaussian {
   MatrixXd covariance;
 };
 
+/// In tolerances from nominal of the population, where it has the parameter. Robots may have other data sheets:
+/// u = s + S v, with u of the robot and v of the population, so Λ becomes S Λ S and h becomes S (h − Λ s).
+ParameterInformation in_units_of(const PopulationPrior& population, ParameterInformation robot) {
+  VectorXd shift = VectorXd::Zero(robot.vector.size()), scale = VectorXd::Ones(robot.vector.size());
+  for (Eigen::Index i = 0; i < robot.vector.size(); ++i) {
+    const auto found = std::ranges::find(population.names, robot.names[static_cast<std::size_t>(i)]);
+    if (found == population.names.end()) continue;
+    const Eigen::Index at = found - population.names.begin();
+    shift[i] = (population.nominal[at] - robot.nominal[i]) / robot.tolerance[i];
+    scale[i] = population.tolerance[at] / robot.tolerance[i];
+  }
+  robot.vector = scale.cwiseProduct(robot.vector - robot.information * shift);
+  robot.information = scale.asDiagonal() * robot.information * scale.asDiagonal();
+  return robot;
+}
+
 /// The likelihood without the parameters that are not listed, which are marginalised; zero for those that it lacks.
 std::optional<RobotLikelihood> likelihood_of(const ParameterInformation& given, const PopulationPrior& population) {
   const auto n = static_cast<Eigen::Index>(population.names.size());
-  const ParameterInformation robot = without_weak_directions(given);
+  const ParameterInformation robot = in_units_of(population, without_weak_directions(given));
   const auto own = static_cast<Eigen::Index>(robot.names.size());
   std::vector<Eigen::Index> to(robot.names.size(), -1);
   MatrixXd regular = robot.information;
