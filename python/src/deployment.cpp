@@ -16,7 +16,7 @@ py::dict plan_in_python(const Robot& robot, int poses_wanted, const std::string&
   const Chain& chain = robot.model.chain;
   plan::PlanTask task{.nominal = chain};
   task.tolerances = robot.model.tolerances;
-  if (robot.model.instrument) task.instrument = *robot.model.instrument;
+  if (robot.model.instrument) task.instrument = plan::planned_instrument(*robot.model.instrument);
   if (sd) task.instrument.sigma = *sd;
   if (sd_angle) task.instrument.sigma_angle = *sd_angle;
   if (measured != "position" && measured != "pose")

@@ -49,6 +49,20 @@ TEST_F(PlanPoses, PosesAreNotWrittenOverByTheirFigure) {
   }
 }
 
+TEST_F(PlanPoses, AnInstrumentThatStatesLengthsAloneHasTheUsualAngles) {
+  const std::string whole = slurp(robot());
+  const auto at = whole.find("[instrument]");
+  const std::string before = whole.substr(0, at);
+  const auto plan = [&](const std::string& name, const std::string& instrument) {
+    std::ofstream(in(name)) << before << "[instrument]\n" << instrument;
+    const Outcome run = kinfer("plan --robot " + name + " --measured pose --poses 4 -o plan.csv --json");
+    EXPECT_EQ(run.code, 0) << run.err;
+    return json::parse(run.out)["expected"]["rms"].get<double>();
+  };
+  const double lengths_alone = plan("lengths.toml", "sigma = 0.05\n");
+  EXPECT_NEAR(lengths_alone, plan("both.toml", "sigma = 0.05\nsigma_angle = 0.0114592\n"), 1e-3 * lengths_alone);
+}
+
 TEST_F(PlanPoses, BadInputGivesOneSentence) {
   const Outcome place = kinfer("plan --robot " + robot() + " -o plan.csv --instrument-at 1,2");
   EXPECT_EQ(place.code, 2);

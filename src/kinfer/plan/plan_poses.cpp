@@ -171,6 +171,12 @@ MatrixXd refine_poses(const PlanTask& task, const PlanOptions& options, const De
 
 }  // namespace
 
+Instrument planned_instrument(Instrument stated) {
+  const Instrument usual = PlanTask{}.instrument;
+  if (!(stated.sigma_angle > 0.0)) stated.sigma_angle = usual.sigma_angle;
+  return with_lengths(stated, usual.sigma);
+}
+
 Result<PosePlan> plan_poses(const PlanTask& task, const PlanOptions& options, Rng rng) {
   MatrixXd candidates = task.candidates;
   if (candidates.size() == 0) {

@@ -24,6 +24,9 @@ struct PlanTask {
   PoseConstraints space{};  ///< of poses that are drawn; not of `candidates`
 };
 
+/// This accuracy, or that of a PlanTask where it states no lengths or no angles.
+Instrument planned_instrument(Instrument stated);
+
 struct PlanOptions {
   int poses = 20;
   Criterion criterion = Criterion::tool;

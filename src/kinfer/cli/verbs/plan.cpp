@@ -52,7 +52,7 @@ Result<plan::PlanTask> read_task(const PlanArguments& options, const RobotModel&
   plan::PlanTask task;
   task.nominal = robot.chain;
   task.tolerances = robot.tolerances;
-  if (robot.instrument) task.instrument = with_lengths(*robot.instrument, task.instrument.sigma);
+  if (robot.instrument) task.instrument = plan::planned_instrument(*robot.instrument);
   task.measures = options.measured == "pose" ? plan::Measures::poses : plan::Measures::positions;
   task.space.instrument = robot.instrument_position;
   if (!options.instrument_position.empty()) {
