@@ -90,6 +90,22 @@ TEST(CirclePointAnalysis, NegativeJointDirectionsAndReversedSweepsAreHandled) {
   }
 }
 
+TEST(CirclePointAnalysis, SweepsThereAndBackHaveTheSignOfTheirJoints) {
+  const Chain truth = on_a_stand(er20(0.125));
+  const PoseSet there = sweeps(truth, {0, 1, 4}, zero, 0.0, Rng(1));
+  std::vector<int> there_and_back;
+  for (int sweep = 0; sweep < 3; ++sweep) {
+    for (int i = 0; i < 13; ++i) there_and_back.push_back(13 * sweep + i);
+    for (int i = 12; i-- > 0;) there_and_back.push_back(13 * sweep + i);
+  }
+  PoseSet data = select(there, there_and_back);
+  data.sweeps = {"first", "second", "third"};
+  for (int row = 0; row < data.rows(); ++row) data.sweep.push_back(row / 25);
+  const auto found = estimate_frames_from_circles(er20(0.125), data);
+  ASSERT_TRUE(found) << found.error().what;
+  expect_same_frames(found->chain, truth, 1e-9, 1e-9);
+}
+
 TEST(CirclePointAnalysis, MarkedSweepsTakePrecedenceAndAMarkOnTwoJointsIsRefused) {
   const Chain truth = on_a_stand(er20(0.125));
   PoseSet data = sweeps(truth, {0, 1}, zero, 0.0, Rng(1));

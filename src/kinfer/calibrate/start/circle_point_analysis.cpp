@@ -198,6 +198,18 @@ std::string label(const Sweep& sweep) {
   return sweep.name.empty() ? fmt::format("rows {} to {}", sweep.rows.front(), sweep.rows.back()) : sweep.name;
 }
 
+/// The normal of the fitted circle, about which the joint turns with growing joint positions, in whatever order these
+/// were visited.
+Vec3 signed_axis(const CircleFit& fit, const std::vector<Vec3>& points, const VectorXd& positions) {
+  double turned = 0.0;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    turned += (positions[row] - positions[row - 1]) *
+              fit.normal.dot((points[i - 1] - fit.center).cross(points[i] - fit.center));
+  }
+  return turned < 0.0 ? Vec3(-fit.normal) : fit.normal;
+}
+
 void estimate_tool(FrameEstimate& found, const PoseSet& data, const std::vector<Sweep>& sweeps) {
   const int wanted = static_cast<int>(data.joints.rows()) - 2;
   found.chain.tool.xyz = mean_tool_point(found.chain, data);
@@ -240,8 +252,7 @@ SweepCircle fit_sweep(const Chain& nominal, const PoseSet& data, const Sweep& sw
   circle.joint = nominal.joints[active_joints(nominal)[sweep.q_index]].name;
   circle.rows = static_cast<int>(points.size());
   circle.swept = range(data, sweep.rows, sweep.q_index);
-  const bool upwards = data.joints(sweep.q_index, sweep.rows.back()) > data.joints(sweep.q_index, sweep.rows.front());
-  circle.axis = upwards ? fit.normal : Vec3(-fit.normal);
+  circle.axis = signed_axis(fit, points, data.joints(sweep.q_index, sweep.rows));
   circle.centre = fit.center;
   circle.radius = fit.radius;
   circle.rms = fit.rms;
