@@ -285,6 +285,27 @@ TEST(Instruments, BothArmsOfATreeAreCalibratedByRowsThatNameTheTip) {
   EXPECT_LT(largest_drawn_error(c), 0.2e-3);
 }
 
+/// No row is of the robot file's own arm, and the base that both arms stand on is not where the file says.
+TEST(Instruments, TheBaseIsFoundByRowsThatAllNameTheOtherArm) {
+  Chain nominal = er20(0.125);
+  nominal.tip = 3;
+  nominal.joints[4].parent = 1;
+  nominal.tool.xyz = Vec3(0.05, 0.02, 0.3);
+  nominal.joints[5].name = "J6";
+  nominal.mountings = {{.name = "J6", .base = {}, .tool = Frame{.xyz = Vec3(0.1, 0.03, 0.1)}, .tip = 5}};
+  Chain truth = with_random_errors(nominal, {}, Rng(12));
+  truth.base = Frame::from_pose(Pose::from_xyz_rpy({1.2, -2.5, 0.35}, {0.02, -0.03, 2.3}));
+  PoseSet data = readings_of(simulate_pose_set(truth, {.poses = 80, .instrument = noise_free}, Rng(1)).value());
+  data.tips = {"J6"};
+  data.tip.assign(80, 0), data.mounting.assign(80, 0);
+  measure_points(data, truth, tracker, Rng(12));
+  data.mounting.clear();
+  const Calibration c = calibrated(nominal, data, tracker);
+  EXPECT_EQ(c.usability, Usability::use) << words::verdict(c);
+  EXPECT_LT(c.after.position.holdout.mean, 45e-6);
+  EXPECT_LT((c.estimate.chain.base.xyz - truth.base.xyz).norm(), 5e-3);
+}
+
 TEST(Instruments, AnAnchorThatTheRobotFileLacksIsAnError) {
   PoseSet data = readings_of(measured(true_robot(), paper2_poses(10, noise_free)));
   data.distances.push_back({0, 1, 1.0});

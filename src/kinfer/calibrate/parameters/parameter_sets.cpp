@@ -12,9 +12,10 @@ bool is_dh_row(Field field) {
   return field == Field::a || field == Field::alpha || field == Field::d || field == Field::theta;
 }
 
-/// What the measurements in the rows of one mounting observe.
-Observes observed_in_mounting(const PoseSet& data, int mounting) {
-  const auto here = [&](int row) { return data.mounting.empty() ? mounting < 0 : data.mounting[row] == mounting; };
+/// What the measurements observe in the rows whose mounting is accepted.
+template <class Accepts>
+Observes observed_in_mountings(const PoseSet& data, Accepts accepts) {
+  const auto here = [&](int row) { return accepts(data.mounting.empty() ? -1 : data.mounting[row]); };
   Observes sum;
   for_each_list(data, [&]<class M>(const std::vector<M>& list) {
     if (std::none_of(list.begin(), list.end(), [&](const M& m) { return here(m.row); })) return;
@@ -27,10 +28,20 @@ Observes observed_in_mounting(const PoseSet& data, int mounting) {
   return sum;
 }
 
-bool is_observed(const FrameNumber& number, const PoseSet& data) {
-  const Observes observed = observed_in_mounting(data, number.mounting);
+/// The mounting whose base a row of this mounting stands on; −1: the chain's own.
+int mounting_of_base(const Chain& chain, int mounting) {
+  const bool own = mounting >= 0 && chain.mountings[static_cast<std::size_t>(mounting)].base;
+  return own ? mounting : -1;
+}
+
+bool is_observed(const FrameNumber& number, const Chain& chain, const PoseSet& data) {
   const bool turn = is_rotation(number.field);
-  if (number.frame == SetupFrame::base) return turn ? observed.base_rotation : observed.base_position;
+  if (number.frame == SetupFrame::base) {
+    const Observes observed =
+        observed_in_mountings(data, [&](int mounting) { return mounting_of_base(chain, mounting) == number.mounting; });
+    return turn ? observed.base_rotation : observed.base_position;
+  }
+  const Observes observed = observed_in_mountings(data, [&](int mounting) { return mounting == number.mounting; });
   return turn ? observed.tool_rotation : observed.tool_position;
 }
 
@@ -44,13 +55,18 @@ bool refers_to(const PoseMeasurements& data, FixtureKind kind, int fixture) {
   return found;
 }
 
-/// Whether any row refers to that target or fixture, or depends on that frame.
-bool is_referenced(const ParameterAddress& at, const PoseSet& data) {
-  if (const auto* frame = std::get_if<FrameNumber>(&at)) return is_observed(*frame, data);
+/// Whether any row refers to that target or fixture.
+bool is_object_referenced(const ParameterAddress& at, const PoseSet& data) {
   if (const auto* fixture = std::get_if<FixtureNumber>(&at)) return refers_to(data, fixture->kind, fixture->index);
   const auto* target = std::get_if<TargetNumber>(&at);
   return target && std::any_of(data.points.begin(), data.points.end(),
                                [&](const PointMeasurement& m) { return m.target == target->target; });
+}
+
+/// The same, or depends on that frame.
+bool is_referenced(const ParameterAddress& at, const Chain& chain, const PoseSet& data) {
+  const auto* frame = std::get_if<FrameNumber>(&at);
+  return frame ? is_observed(*frame, chain, data) : is_object_referenced(at, data);
 }
 
 /// Hayati's angle beta is needed where the common normal of two axes is ill-defined: alpha near 0 or 180 degrees.
@@ -117,7 +133,7 @@ void add_gravity(ParameterSet& set, const Chain& chain, const PoseSet& data, con
 
 ParameterSet frame_parameters(const Chain& chain, const PoseSet& data, const Tolerances& tolerances) {
   ParameterSet set = select_parameters(chain, tolerances, [&](const Parameter& p) {
-    return !std::holds_alternative<TargetNumber>(p.at) && is_referenced(p.at, data);
+    return !std::holds_alternative<TargetNumber>(p.at) && is_referenced(p.at, chain, data);
   });
   for (Parameter& parameter : set.parameters)
     if (!std::holds_alternative<FixtureNumber>(parameter.at))
@@ -129,7 +145,7 @@ ParameterSet frame_parameters(const Chain& chain, const PoseSet& data, const Tol
 ParameterSet geometric_parameters(const Chain& chain, const PoseSet& data, const Tolerances& tolerances) {
   ParameterSet set = select_parameters(chain, tolerances, [&](const Parameter& p) {
     const JointNumber* number = joint_number(p.at);
-    return number ? is_geometric(chain, *number) : is_referenced(p.at, data);
+    return number ? is_geometric(chain, *number) : is_referenced(p.at, chain, data);
   });
   add_gravity(set, chain, data, tolerances);
   return set;
@@ -139,7 +155,7 @@ ParameterSet joint_offset_parameters(const Chain& chain, const PoseSet& data, co
   constexpr double collision_angle = 3.0 * degree, collision_length = 10e-3;
   ParameterSet set = select_parameters(chain, tolerances, [&](const Parameter& p) {
     const JointNumber* number = joint_number(p.at);
-    return number ? is_offset(chain.joints[number->joint], number->field) : is_referenced(p.at, data);
+    return number ? is_offset(chain.joints[number->joint], number->field) : is_referenced(p.at, chain, data);
   });
   for (Parameter& parameter : set.parameters)
     if (is_joint_parameter(parameter.at))
@@ -172,7 +188,7 @@ Result<ParameterSet> named_parameters(const Chain& chain, const Tolerances& tole
 
 ParameterSet restricted_to_data(ParameterSet set, const PoseSet& data) {
   std::erase_if(set.parameters, [&](const Parameter& parameter) {
-    return is_object_parameter(parameter.at) && !is_referenced(parameter.at, data);
+    return is_object_parameter(parameter.at) && !is_object_referenced(parameter.at, data);
   });
   return set;
 }

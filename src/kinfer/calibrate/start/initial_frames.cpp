@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "kinfer/calibrate/parameters/parameter_sets.hpp"
 #include "kinfer/calibrate/start/fixtures.hpp"
@@ -267,6 +268,7 @@ std::vector<int> rows_of_mounting(const PoseSet& data, int mounting) {
 Result<Chain> with_estimated_frames(const Chain& nominal, const PoseSet& data) {
   if (data.mounting.empty()) return estimate_frames(nominal, data);
   Chain chain = nominal;
+  bool base_is_found = false;  // the chain's own, by the first rows that stand on it
   for (int mounting = -1; mounting < static_cast<int>(nominal.mountings.size()); ++mounting) {
     const std::vector<int> rows = rows_of_mounting(data, mounting);
     if (rows.empty()) continue;
@@ -274,12 +276,12 @@ Result<Chain> with_estimated_frames(const Chain& nominal, const PoseSet& data) {
     PoseSet seen = select(data, rows);
     seen.mounting.clear();
     KINFER_TRY(found, estimate_frames(alone, seen));
-    if (mounting < 0) {
-      chain.base = found.base, chain.tool = found.tool;
-      continue;
-    }
-    if (chain.mountings[mounting].base) chain.mountings[mounting].base = found.base;
-    chain.mountings[mounting].tool = found.tool;
+    RobotMounting* const mounted = mounting < 0 ? nullptr : &chain.mountings[mounting];
+    if (mounted && mounted->base)
+      mounted->base = found.base;
+    else if (!std::exchange(base_is_found, true))
+      chain.base = found.base;
+    (mounted ? mounted->tool : chain.tool) = found.tool;
   }
   return refine_frames(with_initial_fixtures(chain, data), data, frame_parameters(chain, data));
 }
