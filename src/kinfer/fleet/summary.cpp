@@ -2,8 +2,11 @@
 #include "kinfer/fleet/summary.hpp"
 
 #include <algorithm>
+#include <map>
+#include <optional>
 
 #include "kinfer/estimate/poses/parameter_information.hpp"
+#include "kinfer/kinematics/parameters_by_name.hpp"
 
 namespace kinfer::fleet {
 namespace {
@@ -20,15 +23,26 @@ bool has_joints_of(const Chain& chain, const Chain& other) {
   return chain.joints.size() == other.joints.size();
 }
 
+/// The number that `truth` has by this name; what it has no terms for is zero in it.
+std::optional<double> truth_of(const std::string& name, const JointNumber& at, const Chain& truth,
+                               const std::map<std::string, ParameterAddress>& true_numbers) {
+  if (const auto found = true_numbers.find(name); found != true_numbers.end()) return value_at(truth, found->second);
+  const bool is_term = at.field == Field::sine || at.field == Field::cosine || at.field == Field::coupling;
+  return is_term ? std::optional(0.0) : std::nullopt;
+}
+
 std::vector<SummaryParameter> joint_parameters_of(const Calibration& calibration, const Chain* truth) {
   const auto free = calibration.estimate.parameters.free();
+  const bool has_truth = truth && has_joints_of(*truth, calibration.estimate.chain);
+  const auto true_numbers = has_truth ? addresses_by_name(*truth) : std::map<std::string, ParameterAddress>{};
   std::vector<SummaryParameter> list;
   for (std::size_t k = 0; k < free.size(); ++k) {
-    if (!is_joint_parameter(free[k]->at)) continue;
+    const JointNumber* number = joint_number(free[k]->at);
+    if (!number) continue;
     const ParameterEstimate& value = calibration.estimate.values[k];
     SummaryParameter parameter{
         .name = value.name, .quantity = value.quantity, .nominal = value.nominal, .value = value.value, .sd = value.sd};
-    if (truth && has_joints_of(*truth, calibration.estimate.chain)) parameter.truth = value_at(*truth, free[k]->at);
+    if (has_truth) parameter.truth = truth_of(value.name, *number, *truth, true_numbers);
     list.push_back(std::move(parameter));
   }
   return list;

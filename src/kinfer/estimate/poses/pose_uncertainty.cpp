@@ -3,25 +3,16 @@
 
 #include <cmath>
 #include <limits>
-#include <map>
 
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/geometry/rotation.hpp"
+#include "kinfer/kinematics/parameters_by_name.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer {
 namespace {
 
 using Eigen::Index;
-
-/// Every number of the chain that a calibration may free, by name.
-std::map<std::string, ParameterAddress> addresses_by_name(const Chain& chain) {
-  std::map<std::string, ParameterAddress> addresses;
-  for (const ParameterSet& set : {all_parameters(chain, {}), setup_parameters(chain, {})})
-    for (const Parameter& parameter : set.parameters) addresses.emplace(parameter.name, parameter.at);
-  for (const ParameterAddress& at : non_geometric_addresses(chain)) addresses.emplace(name_of(chain, at), at);
-  return addresses;
-}
 
 /// The parameters that the chain has, and what belongs to them of the model.
 struct KnownParameters {
