@@ -42,6 +42,28 @@ TEST(Iso9283, ACopyOfAMeasurementIsNoRepetition) {
   EXPECT_FALSE(poses[0].repeatability.has_value());
 }
 
+TEST(Iso9283, AnotherLoadTemperatureOrSetUpIsAnotherPose) {
+  Chain chain = arm();
+  chain.mountings = {{.name = "second", .base = Frame{.xyz = Vec3(1.0, 0.0, 0.0)}, .tool = chain.tool}};
+  PoseSet data = test::measured(chain, test::paper2_poses(5, test::noise_free), 1);
+  for (int row = 1; row < 5; ++row) data.joints.col(row) = data.joints.col(0);
+  data.payload = {0.0, 0.0, 20.0, 0.0, 0.0};
+  data.temperature = {20.0, 20.0, 20.0, 35.0, 20.0};
+  data.mounting = {-1, -1, -1, -1, 0};
+  const Vec3 p = forward(chain, data.joints.col(0)).position;
+  const double off[] = {-1e-3, 1e-3, 2e-3, 3e-3, 4e-3};
+  for (int row = 0; row < 5; ++row) data.points[row].position = p + Vec3(row == 4 ? 1.0 : 0.0, 0.0, off[row]);
+  const std::vector<PoseAccuracy> poses = evaluate_pose_accuracy(chain, chain, data);
+  ASSERT_EQ(poses.size(), 4u);
+  EXPECT_EQ(poses[0].rows, (std::vector<int>{0, 1}));
+  EXPECT_NEAR(*poses[0].repeatability, 1e-3, 1e-12);
+  for (int k = 1; k < 4; ++k) {
+    EXPECT_EQ(poses[k].rows, std::vector<int>{k + 1});
+    EXPECT_NEAR(poses[k].accuracy_after, off[k + 1], 1e-12);
+    EXPECT_FALSE(poses[k].repeatability.has_value());
+  }
+}
+
 TEST(Iso9283, RowsOfOnePoseAreThoseOfOneCommandHoweverReadingsScatter) {
   const Chain chain = arm();
   PoseSet data = test::measured(chain, test::paper2_poses(400, test::noise_free), 1);

@@ -9,6 +9,7 @@
 
 #include "kinfer/calibrate/validation/thresholds.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
+#include "kinfer/estimate/poses/repeated_measurements.hpp"
 #include "kinfer/geometry/fit.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/measurement/commanded_poses.hpp"
@@ -48,10 +49,10 @@ std::vector<PoseAccuracy> evaluate_pose_accuracy(const Chain& before, const Chai
   const EvaluatedPoses at_before = evaluate_poses(before, {}, data, Derivative::no),
                        at_after = evaluate_poses(after, {}, data, Derivative::no);
   std::vector<PoseAccuracy> poses;
-  const std::vector<int> pose_of_row = commanded_poses(data);
+  const std::vector<int> state_of_row = states_of_rows(data, commanded_poses(data));
   std::map<int, std::size_t> place;
   for (const int row : rows_with_points(points)) {
-    const auto [at, is_new] = place.try_emplace(pose_of_row[static_cast<std::size_t>(row)], poses.size());
+    const auto [at, is_new] = place.try_emplace(state_of_row[static_cast<std::size_t>(row)], poses.size());
     if (is_new) poses.push_back({{}, 0.0, 0.0, {}});
     poses[at->second].rows.push_back(row);
   }

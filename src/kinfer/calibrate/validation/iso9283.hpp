@@ -9,7 +9,8 @@
 
 namespace kinfer::calibrate {
 
-/// In the order of each pose's first row; rows without a measured tool point are left out.
+/// In the order of each pose's first row; rows without a measured tool point are left out. With another mounting,
+/// payload or temperature [K] a pose is another one.
 std::vector<PoseAccuracy> evaluate_pose_accuracy(const Chain& before, const Chain& after, const PoseSet& data);
 
 }  // namespace kinfer::calibrate

@@ -13,7 +13,7 @@
 namespace kinfer {
 namespace {
 
-using QuantityAtPose = std::tuple<int, int, double, double, int>;  // pose, mounting, payload, temperature, fixture
+using RowState = std::tuple<int, int, double, double>;  // pose, mounting, payload, temperature
 
 template <class T>
 T entry_or(const std::vector<T>& list, std::size_t row, T otherwise) {
@@ -28,19 +28,12 @@ int object_of(const M& measurement) {
 }
 
 template <class M>
-QuantityAtPose quantity_of(const PoseSet& data, const M& measurement) {
-  const auto row = static_cast<std::size_t>(measurement.row);
-  const double kelvin = std::round(entry_or(data.temperature, row, 0.0));
-  return {data.pose[row], entry_or(data.mounting, row, -1), entry_or(data.payload, row, 0.0),
-          std::isnan(kelvin) ? 0.0 : kelvin, object_of(measurement)};
-}
-
-template <class M>
-RepeatedMeasurements groups_of(const PoseSet& data, const std::vector<M>& list) {
+RepeatedMeasurements groups_of(const std::vector<int>& states, const std::vector<M>& list) {
   RepeatedMeasurements groups;
-  std::map<QuantityAtPose, int> known;
+  std::map<std::pair<int, int>, int> known;  // state, fixture or target
   for (const M& measurement : list) {
-    const auto [at, is_new] = known.try_emplace(quantity_of(data, measurement), static_cast<int>(known.size()));
+    const std::pair quantity(states[static_cast<std::size_t>(measurement.row)], object_of(measurement));
+    const auto [at, is_new] = known.try_emplace(quantity, static_cast<int>(known.size()));
     groups.group.push_back(at->second);
     if (is_new) groups.size.push_back(0.0);
     groups.size[static_cast<std::size_t>(at->second)] += 1.0;
@@ -61,11 +54,24 @@ PoseSet with_commanded_poses(PoseSet data, const Chain& chain) {
   return data;
 }
 
+std::vector<int> states_of_rows(const PoseSet& data, const std::vector<int>& poses) {
+  std::vector<int> states;
+  std::map<RowState, int> known;
+  for (std::size_t row = 0; row < poses.size(); ++row) {
+    const double kelvin = std::round(entry_or(data.temperature, row, 0.0));
+    const RowState state{poses[row], entry_or(data.mounting, row, -1), entry_or(data.payload, row, 0.0),
+                         std::isnan(kelvin) ? 0.0 : kelvin};
+    states.push_back(known.try_emplace(state, static_cast<int>(known.size())).first->second);
+  }
+  return states;
+}
+
 std::array<RepeatedMeasurements, measurement_kinds> repeated_measurements(const PoseSet& data) {
   std::array<RepeatedMeasurements, measurement_kinds> repeated;
   if (!repeats_a_pose(data.pose)) return repeated;
+  const std::vector<int> states = states_of_rows(data, data.pose);
   for_each_list(data, [&]<class M>(const std::vector<M>& list) {
-    if constexpr (!std::is_same_v<M, PairDistance>) repeated[index(kind_of<M>)] = groups_of(data, list);
+    if constexpr (!std::is_same_v<M, PairDistance>) repeated[index(kind_of<M>)] = groups_of(states, list);
   });
   return repeated;
 }

@@ -17,8 +17,12 @@ namespace kinfer {
 /// The set with the commanded pose of each row.
 PoseSet with_commanded_poses(PoseSet data, const Chain& chain);
 
+/// The state of each row, numbered in the order of their first rows: rows of one state have the pose, the mounting, the
+/// payload and the temperature [K] in common. `poses`: the pose of each row.
+std::vector<int> states_of_rows(const PoseSet& data, const std::vector<int>& poses);
+
 /// Of one kind: the group of each measurement, numbered in the order of their first ones, and their sizes. Those of one
-/// group have the pose, the mounting, the payload, the temperature [K] and the fixture or target in common. Empty:
+/// group have the state of their rows and the fixture or target in common. Empty:
 /// nothing was repeated.
 struct RepeatedMeasurements {
   std::vector<int> group;
