@@ -151,6 +151,25 @@ TEST(Verify, APoseThatIsMeasuredAgainTellsNoMore) {
   EXPECT_FALSE(verify(truth, {}, tracker, select(today, std::vector<int>(30, 7))));
 }
 
+/// Each set-up has a base and a tool of its own, and its points tell of them whatever poses the other one has.
+TEST(Verify, APoseThatIsMeasuredInAnotherSetUpTellsOfThatOne) {
+  Chain truth = on_a_stand(with_table3_errors(er20(0.125)));
+  truth.setup = "first";
+  truth.mountings = {{.name = "second",
+                      .base = Frame::from_pose(Pose::from_xyz_rpy({-0.4, 1.5, 0.2}, {0.01, 0.02, -0.8})),
+                      .tool = truth.tool}};
+  const PoseSet once = measured(truth, paper2_poses(5, tracker), 5);
+  PoseSet both = select(once, {0, 1, 2, 3, 4, 0, 1, 2, 3, 4});
+  both.setups = {"first", "second"};
+  for (int row = 0; row < 10; ++row) both.setup.push_back(row / 5);
+  const Pose second_T_first = truth.mountings[0].base->pose() * truth.base.pose().inverse();
+  for (PointMeasurement& point : both.points)
+    if (point.row >= 5) point.position = second_T_first * point.position;
+  const Verification v = verify(truth, {}, tracker, both).value();
+  EXPECT_EQ(v.result, VerificationResult::valid);
+  EXPECT_EQ(v.redundancy, 2 * verify(truth, {}, tracker, once)->redundancy);
+}
+
 TEST(Verify, NeedsMeasuredPositions) {
   PoseSet data = measured(er20(), paper2_poses(5, tracker));
   data.points.clear();

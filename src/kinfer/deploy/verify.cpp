@@ -63,14 +63,18 @@ std::optional<Instrument> known_instrument(const std::optional<Instrument>& stat
   return with_lengths(stated.value_or(Instrument{}), prediction->noise);
 }
 
-/// Of different poses and targets: a pose that was measured again tells no more about the robot.
+/// Of different poses and targets: a pose that was measured again tells no more about the robot, but in another
+/// mounting it tells of the frames of that one.
 int measured_numbers(const PoseSet& data) {
   const std::vector<int> poses = commanded_poses(data);
-  const auto pose_of = [&](int row) { return poses[static_cast<std::size_t>(row)]; };
-  std::set<std::pair<int, int>> points;
-  std::set<int> orientations;
-  for (const PointMeasurement& point : data.points) points.emplace(pose_of(point.row), point.target);
-  for (const OrientationMeasurement& m : data.orientations) orientations.insert(pose_of(m.row));
+  const auto place_of = [&](int row) {
+    const auto at = static_cast<std::size_t>(row);
+    return std::pair(poses[at], data.mounting.empty() ? -1 : data.mounting[at]);
+  };
+  std::set<std::pair<std::pair<int, int>, int>> points;
+  std::set<std::pair<int, int>> orientations;
+  for (const PointMeasurement& point : data.points) points.emplace(place_of(point.row), point.target);
+  for (const OrientationMeasurement& m : data.orientations) orientations.insert(place_of(m.row));
   return 3 * static_cast<int>(points.size() + orientations.size());
 }
 
