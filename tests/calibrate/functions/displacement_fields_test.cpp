@@ -123,6 +123,32 @@ TEST(DisplacementFields, OfAnEarlierCalibrationAreKeptWhereRowsAreFew) {
   EXPECT_EQ(fit.chain.field.coefficients, earlier.field.coefficients);
 }
 
+/// Four wires hold a point, wherever the base stands.
+TEST(DisplacementFields, AreFoundByDrawWires) {
+  Chain chain = nominal_robot();
+  chain.base = Frame::from_pose(Pose::from_xyz_rpy({0.3, -0.2, 0.1}, {0.02, -0.03, 1.3}));
+  chain.fixtures.anchors = {{2.0, 1.5, 0.1}, {2.0, -1.5, 0.2}, {-1.5, 0.3, 2.2}, {0.4, 0.2, -1.5}};
+  const auto readings = [&](int poses, int seed) {
+    PoseSet data = simulated_readings(chain, poses, seed);
+    measure_distances(data, chain, tracker.sigma, Rng(seed + 50));
+    const std::vector<Pose> at = true_poses(chain, data);
+    const Pose base = chain.base.pose();
+    for (DistanceMeasurement& wire : data.distances) {
+      const Vec3 from = at[wire.row].position - base * chain.fixtures.anchors[wire.anchor],
+                 moved = from + base.rotation * yielding(data.joints.col(wire.row));
+      wire.distance += moved.norm() - from.norm();
+    }
+    return data;
+  };
+  const PoseSet data = readings(150, 1), unseen = readings(100, 7);
+  const Estimate geometry = fit_bundle(chain, geometric_parameters(chain, data, {}), data, tracker);
+  const FoundField found = find_field(geometry, data, tracker);
+  EXPECT_GT(found.log_evidence_gain, 20.0);
+  const Estimate fit = fit_with_field(found.chain, geometry.parameters, data, tracker, {});
+  const auto error = [&](const Chain& of) { return mean(residual_norms(kind_of<DistanceMeasurement>, of, unseen)); };
+  EXPECT_LT(error(fit.chain), 0.7 * error(geometry.chain));
+}
+
 /// A small problem, and the same by matrices of all its residuals.
 struct DenseField : ::testing::Test {
   PoseSet data = displaced_readings(nominal_robot(), 40);

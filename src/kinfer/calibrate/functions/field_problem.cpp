@@ -27,28 +27,34 @@ std::vector<int> bases_of(const Chain& chain) {
   return bases;
 }
 
-/// The free parameters of `set`, then those translations of bases that are not among them; and the index of the
-/// translations of each base.
+/// The free parameters of `set`, then those coordinates of bases and anchors that are not among them; and the indices
+/// of the coordinates of each.
 struct WithTranslations {
   ParameterSet set;
-  std::vector<std::array<Index, 3>> index{};
+  std::vector<std::array<Index, 3>> bases{}, anchors{};
 };
 
-WithTranslations with_base_translations(const Chain& chain, const ParameterSet& set) {
+WithTranslations with_translations(const Chain& chain, const ParameterSet& set, const PoseSet& rows) {
   WithTranslations all{{set.parameters, {}}};
   std::vector<ParameterAddress> addresses;
   for (const Parameter* parameter : set.free()) addresses.push_back(parameter->at);
-  for (const int mounting : bases_of(chain)) {
-    all.index.emplace_back();
+  const auto indices_of = [&](auto address_of) {
+    std::array<Index, 3> indices{};
     for (const Field field : {Field::x, Field::y, Field::z}) {
-      const ParameterAddress at = FrameNumber{SetupFrame::base, field, mounting};
+      const ParameterAddress at = address_of(field);
       const auto found = std::ranges::find(addresses, at);
-      all.index.back()[static_cast<std::size_t>(field)] = found - addresses.begin();
+      indices[static_cast<std::size_t>(field)] = found - addresses.begin();
       if (found != addresses.end()) continue;
       all.set.parameters.push_back(parameter_at(chain, at, 1.0));
       addresses.push_back(at);
     }
-  }
+    return indices;
+  };
+  for (const int mounting : bases_of(chain))
+    all.bases.push_back(indices_of([&](Field field) { return FrameNumber{SetupFrame::base, field, mounting}; }));
+  const int anchors = rows.distances.empty() ? 0 : static_cast<int>(chain.fixtures.anchors.size());
+  for (int i = 0; i < anchors; ++i)
+    all.anchors.push_back(indices_of([&](Field field) { return FixtureNumber{fixture_kind("anchor"), i, field}; }));
   return all;
 }
 
@@ -78,7 +84,7 @@ FieldProblem::FieldProblem(const Chain& chain, const ParameterSet& set, const We
 
 void FieldProblem::linearise(const WeightedRows& data) {
   const Chain plain = without_field(chain_);
-  const auto [all, translations] = with_base_translations(plain, set_);
+  const auto [all, base_indices, anchor_indices] = with_translations(plain, set_, data.rows);
   VectorXd r;
   MatrixXd jacobian;
   pose_residuals(plain, all, data.rows, data.weights, data.threads).evaluate(pack(all, plain), r, &jacobian);
@@ -89,7 +95,9 @@ void FieldProblem::linearise(const WeightedRows& data) {
   MatrixXd slopes = MatrixXd::Zero(count, 3);
   for (std::size_t b = 0; b < bases.size(); ++b)
     slopes +=
-        jacobian.topRows(count)(Eigen::all, translations[b]) * with_mounting(chain_, bases[b]).base.pose().rotation;
+        jacobian.topRows(count)(Eigen::all, base_indices[b]) * with_mounting(chain_, bases[b]).base.pose().rotation;
+  // Anchors move with the base, so that its translation changes no wire: a displaced tool is as anchors displaced back.
+  for (const std::array<Index, 3>& indices : anchor_indices) slopes -= jacobian.topRows(count)(Eigen::all, indices);
 
   const Index values = roots_.inverse_root.cols();
   MatrixXd features(data.rows.rows(), values);
