@@ -210,6 +210,16 @@ INSTANTIATE_TEST_SUITE_P(Diagnosis, ShiftedRows,
                                               test.param.second < 0 ? "minus_" : "", std::abs(test.param.second));
                          });
 
+TEST(Diagnosis, RowsWithoutAPartnerLoseTheirMeasurementsOfEveryKind) {
+  CalibrationTask task = measured_robot(arm6());
+  task.data = with_readings_shifted(task.data, 0, 1);
+  task.data.stations = {"west"};
+  for (int row = 0; row < task.data.rows(); ++row) task.data.directions.push_back({row, 0, Vec3::UnitX()});
+  const PoseSet corrected = diagnose(task).corrected_task.data;
+  EXPECT_EQ(corrected.points.size(), task.data.points.size() - 1);
+  EXPECT_EQ(corrected.directions.size(), task.data.directions.size() - 1);
+}
+
 TEST(Diagnosis, SwappedRowsAreListedTogether) {
   CalibrationTask task = measured_robot(ur_like());
   std::swap(task.data.points[12].position, task.data.points[40].position);

@@ -212,13 +212,8 @@ void apply_pairing(PoseSet& data, const std::vector<int>& partner) {
     if (data.torques.size() > 0) data.torques.col(row) = before.torques.col(partner[row]);
   }
   const auto lost = [&](const auto& measurement) { return partner[measurement.row] < 0; };
-  std::erase_if(data.points, lost);
-  std::erase_if(data.orientations, lost);
-  std::erase_if(data.distances, lost);
-  std::erase_if(data.contacts, lost);
-  std::erase_if(data.plane_contacts, lost);
-  std::erase_if(data.tilts, lost);
-  std::erase_if(data.pairs, [&](const PairDistance& pair) { return lost(pair) || partner[pair.other] < 0; });
+  for_each_list(data, [&](auto& list) { std::erase_if(list, lost); });
+  std::erase_if(data.pairs, [&](const PairDistance& pair) { return partner[pair.other] < 0; });
 }
 
 }  // namespace
