@@ -124,29 +124,53 @@ TEST(DisplacementFields, OfAnEarlierCalibrationAreKeptWhereRowsAreFew) {
 }
 
 /// Four wires hold a point, wherever the base stands.
-TEST(DisplacementFields, AreFoundByDrawWires) {
+Chain robot_with_wires() {
   Chain chain = nominal_robot();
   chain.base = Frame::from_pose(Pose::from_xyz_rpy({0.3, -0.2, 0.1}, {0.02, -0.03, 1.3}));
   chain.fixtures.anchors = {{2.0, 1.5, 0.1}, {2.0, -1.5, 0.2}, {-1.5, 0.3, 2.2}, {0.4, 0.2, -1.5}};
-  const auto readings = [&](int poses, int seed) {
-    PoseSet data = simulated_readings(chain, poses, seed);
-    measure_distances(data, chain, tracker.sigma, Rng(seed + 50));
-    const std::vector<Pose> at = true_poses(chain, data);
-    const Pose base = chain.base.pose();
-    for (DistanceMeasurement& wire : data.distances) {
-      const Vec3 from = at[wire.row].position - base * chain.fixtures.anchors[wire.anchor],
-                 moved = from + base.rotation * yielding(data.joints.col(wire.row));
-      wire.distance += moved.norm() - from.norm();
-    }
-    return data;
-  };
-  const PoseSet data = readings(150, 1), unseen = readings(100, 7);
-  const Estimate geometry = fit_bundle(chain, geometric_parameters(chain, data, {}), data, tracker);
+  return chain;
+}
+
+PoseSet wire_readings(const Chain& truth, int poses, int seed) {
+  PoseSet data = simulated_readings(truth, poses, seed);
+  measure_distances(data, truth, tracker.sigma, Rng(seed + 50));
+  return data;
+}
+
+/// Of a robot whose tool is displaced.
+PoseSet displaced_wire_readings(const Chain& truth, int poses, int seed) {
+  PoseSet data = wire_readings(truth, poses, seed);
+  const std::vector<Pose> at = true_poses(truth, data);
+  const Pose base = truth.base.pose();
+  for (DistanceMeasurement& wire : data.distances) {
+    const Vec3 from = at[wire.row].position - base * truth.fixtures.anchors[wire.anchor],
+               to = from + base.rotation * yielding(data.joints.col(wire.row));
+    wire.distance += to.norm() - from.norm();
+  }
+  return data;
+}
+
+Estimate geometry_by_wires(const Chain& chain, const PoseSet& data) {
+  return fit_bundle(chain, geometric_parameters(chain, data, {}), data, tracker);
+}
+
+TEST(DisplacementFields, AreFoundByDrawWires) {
+  const Chain chain = robot_with_wires();
+  const PoseSet data = displaced_wire_readings(chain, 150, 1), unseen = displaced_wire_readings(chain, 100, 7);
+  const Estimate geometry = geometry_by_wires(chain, data);
   const FoundField found = find_field(geometry, data, tracker);
   EXPECT_GT(found.log_evidence_gain, 20.0);
   const Estimate fit = fit_with_field(found.chain, geometry.parameters, data, tracker, {});
   const auto error = [&](const Chain& of) { return mean(residual_norms(kind_of<DistanceMeasurement>, of, unseen)); };
   EXPECT_LT(error(fit.chain), 0.7 * error(geometry.chain));
+}
+
+TEST(DisplacementFields, AreNotFoundInTheNoiseOfDrawWires) {
+  const Chain chain = robot_with_wires();
+  for (int seed = 1; seed <= 10; ++seed) {
+    const PoseSet data = wire_readings(chain, seed % 2 == 0 ? 40 : 100, seed);
+    EXPECT_LT(find_field(geometry_by_wires(chain, data), data, tracker).log_evidence_gain, 0.0) << seed;
+  }
 }
 
 /// A small problem, and the same by matrices of all its residuals.
