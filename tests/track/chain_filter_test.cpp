@@ -395,6 +395,36 @@ TEST(FilterModel, AxisSdsAreThoseOfTheDirectionsOnEachSegment) {
   EXPECT_TRUE(is_any);
 }
 
+/// A first-order process forgets: after a long gap a bias is off by the difference of two of its values.
+TEST(ChainFilter, BiasesMayHaveChangedWhereItStartsAgain) {
+  const TrackedTree tree(16);
+  ChainFilter before = tree.filter();
+  before.update(tree.block(1));
+  const TrackingModel given = [] {
+    Rng rng(16);
+    return test::random_tree(rng);
+  }();
+  const double gyroscope = std::max(min_bias_instability.rate, given.prior.bias_instability.rate);
+  const InsLevel walk = tree.model->bias_walk;
+  const auto grown = [&](double gap, Index state) {
+    ChainFilter filter = before;
+    ChainState later = tree.state;
+    later.time = before.state().time + gap;
+    filter.start(later, tree.fast);
+    return filter.covariance()(state, state) - before.covariance()(state, state);
+  };
+  for (Index s = 0; s < tree.model->layout.sensors; ++s) {
+    const Index bias = tree.model->layout.sensor_state(s);
+    EXPECT_EQ(grown(0.0, bias + SensorIndex::gyroscope_bias), 0.0);
+    EXPECT_NEAR(grown(10.0, bias + SensorIndex::gyroscope_bias), 10.0 * walk.rate, 1e-3 * walk.rate);
+    EXPECT_NEAR(grown(10.0, bias + SensorIndex::accelerometer_bias), 10.0 * walk.force, 1e-3 * walk.force);
+    EXPECT_NEAR(grown(1e6, bias + SensorIndex::gyroscope_bias), 2.0 * square(gyroscope), 1e-3 * square(gyroscope));
+  }
+  EXPECT_EQ(tree.filter().covariance()(tree.model->layout.sensor_state(0), tree.model->layout.sensor_state(0)),
+            tree.model->parameters(0, 0))
+      << "nothing was known before the first start";
+}
+
 TEST(Replay, OfNothingThatIsNewEndsWhereTheFilterIs) {
   const TrackedTree tree(15);
   ChainFilter filter = tree.filter();

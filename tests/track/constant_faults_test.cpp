@@ -96,10 +96,35 @@ TEST(ConstantFaults, ATurnThatIsBelievedIsTakenOutOfTheState) {
   const ChainFilter plain = run(start, rows, 1, Vec3::Zero());
   ChainFilter turned = run(start, rows, 1, turn);
   const double before = (turned.state().joints - plain.state().joints).norm();
-  turned.believe_turn(1, turn, Mat3::Zero());
+  turned.believe_turn(1, turn, Mat3::Zero(), 1.0);
   EXPECT_LT((turned.state().joints - plain.state().joints).norm(), 3e-2 * before);
   const Mat3 scale = turned.state().sensors[1].gyroscope_scale - plain.state().sensors[1].gyroscope_scale;
   EXPECT_LT((scale - skew(turn)).norm(), 1e-2 * turn.norm());
+}
+
+/// What a turn is believed to be follows from the scores, and so from every fault.
+TEST(ConstantFaults, ABeliefDependsOnOtherFaultsByTheScoresAsTheyCount) {
+  const ChainFilter start = started_filter();
+  const std::vector<BlockMeasurement> rows = expected_rows(start);
+  constexpr double step = 1e-6, excess = 5.0;
+  const Mat3 covariance = 1e-6 * Mat3::Identity();
+  const auto believed = [&](ChainFilter filter) {
+    const Vec3 mean = covariance * filter.constant_faults().of(1).score / excess;
+    filter.believe_turn(1, mean, covariance, excess);
+    return filter;
+  };
+  const ChainFilter plain = run(start, rows, 0, Vec3::Zero());
+  const ChainFilter turned = run(start, rows, 2, step * Vec3::UnitX());
+  const auto velocities = [](const VectorXd& joints) {
+    return VectorXd(joints(Eigen::seq(1, Eigen::indexing::last, position_states)));
+  };
+  const VectorXd change = (believed(turned).state().joints - believed(plain).state().joints -
+                           (turned.state().joints - plain.state().joints)) /
+                          step;
+  const MatrixXd by_fault = believed(plain).constant_faults().by_fault() - plain.constant_faults().by_fault();
+  const VectorXd expected = velocities(by_fault.row(6).segment(base_states, change.size()));
+  EXPECT_GT(expected.norm(), 0.0);
+  EXPECT_LT((velocities(change) - expected).norm(), 5e-2 * expected.norm());
 }
 
 }  // namespace

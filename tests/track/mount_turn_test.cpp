@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/random_tracked_tree.hpp"
+
 namespace kinfer::track {
 namespace {
 
@@ -38,6 +40,21 @@ TEST(MountTurn, NothingMeasuredTellsNothing) {
   const MountTurn wide{.mean = Vec3::Zero(), .covariance = 0.0025 * Mat3::Identity()};
   const MountTurn narrow{.mean = Vec3::Zero(), .covariance = 1e-6 * Mat3::Identity()};
   EXPECT_NEAR(log_odds_of(narrow, wide, wide), 0.0, 1e-12);
+}
+
+/// Of a sensor whose scale matrices are certain.
+TEST(MountTurn, AMountingThatIsCertainHasOdds) {
+  Rng rng(5);
+  auto model = std::make_shared<FilterModel>(filter_model(test::random_tree(rng)));
+  model->parameters.setZero();
+  const MountTurn certain = mount_turn(ChainFilter(model), 1);
+  const MountTurn wide{.mean = certain.mean, .covariance = 0.0025 * Mat3::Identity()};
+  for (const double angle : {0.0, 0.02}) {
+    const MountTurn after{.mean = certain.mean + Vec3(angle, 0.0, 0.0), .covariance = 1e-6 * Mat3::Identity()};
+    const double odds = log_odds_of(certain, wide, after);
+    EXPECT_EQ(odds > 3.0, angle == 0.0) << odds;
+    EXPECT_EQ(odds<-3.0, angle> 0.0) << odds;
+  }
 }
 
 }  // namespace

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <vector>
+
 namespace kinfer::track {
 namespace {
 
@@ -51,6 +54,61 @@ TEST(RowBlock, TheFirstRowBeyondAGapIsCompleteAlone) {
   block.clear();
   block.add(row_at(0.31));
   EXPECT_FALSE(block.is_complete(0.1));
+}
+
+/// Rows gathered into blocks of 20 ms: the rows in each that is complete.
+std::vector<int> rows_of_blocks(RowBlock& block, const std::vector<double>& times) {
+  std::vector<int> rows;
+  for (const double time : times) {
+    if (block.ends_before(time)) block.clear();
+    block.add(row_at(time));
+    if (!block.is_complete(0.02)) continue;
+    rows.push_back(block.rows());
+    block.clear();
+  }
+  return rows;
+}
+
+/// The blocks at the loss are shorter or longer; those that follow are as ever.
+void expect_same_blocks_after(int before, int lost, double period) {
+  std::vector<double> times;
+  for (int k = 0; k < 100; ++k)
+    if (k < before || k >= before + lost) times.push_back(1.0 + period * k);
+  RowBlock block(1);
+  const std::vector<int> rows = rows_of_blocks(block, times);
+  ASSERT_GT(rows.size(), 10u);
+  for (std::size_t i = 10; i < rows.size(); ++i)
+    EXPECT_EQ(rows[i], std::lround(0.02 / period)) << before << " rows, then " << lost << " lost, block " << i;
+  RowBlock last(block);
+  last.clear();
+  last.add(row_at(2.0 + period));
+  EXPECT_NEAR(last.length(), period, 1e-9) << "the sampling period";
+}
+
+/// A step beyond 13 ms counted as the period for ever: each row was a block of its own from there on, and what lasts
+/// over many blocks was averaged as if it were new in each.
+TEST(RowBlock, IsAsLongAsBeforeAfterRowsAreLost) {
+  for (const int before : {1, 2, 3, 20, 21, 22, 23}) {
+    for (int lost = 1; lost < 7; ++lost) expect_same_blocks_after(before, lost, 0.005);
+    expect_same_blocks_after(before, 1, 0.01);
+    expect_same_blocks_after(before, 2, 0.01);
+  }
+}
+
+TEST(RowBlock, AFirstRowLongBeforeTheOthersIsNoSamplingPeriod) {
+  for (const int lost : {10, 30, 50}) expect_same_blocks_after(1, lost, 0.005);
+}
+
+TEST(RowBlock, FollowsAChangeOfTheSamplingRate) {
+  std::vector<double> times;
+  for (int k = 0; k < 100; ++k) times.push_back(0.0025 * k);
+  for (int k = 0; k < 100; ++k) times.push_back(0.25 + 0.01 * k);
+  for (int k = 0; k < 100; ++k) times.push_back(1.25 + 0.0025 * k);
+  RowBlock block(1);
+  const std::vector<int> rows = rows_of_blocks(block, times);
+  EXPECT_EQ(rows[5], 8);
+  EXPECT_EQ(rows[12 + 25], 2);
+  EXPECT_EQ(rows[rows.size() - 2], 8);
 }
 
 TEST(RowBlock, SlowSamplingIsNoGap) {

@@ -177,6 +177,23 @@ TEST(Tracker, TakesTheUsersStart) {
   EXPECT_EQ(tracker.state().joints[0].reference, JointReference::chain);
 }
 
+/// A few rows, then a pause before there were enough to begin.
+TEST(Tracker, TakesTheUsersStartAfterAPauseInTheFirstRows) {
+  TrackOptions options;
+  options.start = VectorXd::Constant(5, no_value);
+  (*options.start)[0] = 0.5;
+  Tracker tracker(still_excavator().model, options);
+  InsRow row;
+  for (std::size_t r = 0; r < 100; ++r) {
+    test::fill_row(still_excavator().drive.recording, r, row);
+    if (r >= 10) row.time += 2.0;
+    tracker.add(row);
+  }
+  ASSERT_TRUE(tracker.state().started);
+  EXPECT_NEAR(tracker.state().q[0], 0.5, 0.05);
+  EXPECT_EQ(tracker.state().joints[0].reference, JointReference::chain);
+}
+
 TEST(Tracker, StartsAgainAfterAGap) {
   const Outcome out = run(still_excavator(), {}, [](InsRow& row) {
     if (row.time > 20.0) row.time += 5.0;

@@ -77,6 +77,48 @@ TEST(Tracker, ASensorThatTurnsBeforeTheTelescopeIsPlacedIsNamed) {
   EXPECT_NEAR(tracker.state().alarms[0].since, turned_from, 1.0);
 }
 
+/// A machine that rests, turned as a whole about its base sensor: what its sensors measure besides.
+class RockedAtRest {
+ public:
+  explicit RockedAtRest(const MachineMotion& motion) : motion_(motion) {}
+
+  void operator()(double since, InsRow& row) const {
+    const double phase = frequency * since, angle = amplitude * std::sin(phase);
+    const Vec3 axis = Vec3(1.0, 0.5, 0.0).normalized(), rate = amplitude * frequency * std::cos(phase) * axis,
+               acceleration = -frequency * frequency * angle * axis;
+    const Mat3 turn = exp_so3(angle * axis);
+    for (std::size_t s = 0; s < row.sensors.size(); ++s) {
+      const Mat3 world_R_sensor = turn * motion_.sensors[s].world_R_sensor[0].toRotationMatrix();
+      const Vec3 arm = turn * (motion_.sensors[s].position[0] - motion_.sensors[0].position[0]);
+      const Vec3 up = standard_gravity * Vec3::UnitZ(), moved = acceleration.cross(arm) + rate.cross(rate.cross(arm));
+      row.sensors[s].angular_velocity += world_R_sensor.transpose() * rate;
+      row.sensors[s].acceleration += world_R_sensor.transpose() * (up + moved - turn * up);
+    }
+  }
+
+ private:
+  static constexpr double amplitude = 0.03, frequency = 2.0;  // [rad], [rad/s]
+  const MachineMotion& motion_;
+};
+
+/// The base counted as still for as long as the telescope rests, and its motion was put down to the sensors.
+TEST(Tracker, ABaseThatBeginsToMoveIsSeenWhileTheTelescopeIsNotPlaced) {
+  const Case given = crane_with_a_telescope();
+  const RockedAtRest rock(given.drive.motion);
+  constexpr double rest = 3.0, from = 2.0 * rest;  // [s] of the drive; from when on
+  Tracker tracker(given.model);
+  InsRow row;
+  for (int again = 0; again < 5; ++again)
+    for (std::size_t r = 0; r < 600; ++r) {
+      test::fill_row(given.drive.recording, r, row);
+      row.time += again * rest;
+      if (row.time > from) rock(row.time - from, row);
+      tracker.add(row);
+      EXPECT_TRUE(tracker.state().alarms.empty()) << row.time;
+    }
+  EXPECT_EQ(tracker.filter().state().base, BaseMode::moving);
+}
+
 TEST(Tracker, ACopyGoesOnAlike) {
   const Case& given = still_excavator();
   Tracker one(given.model);

@@ -68,9 +68,9 @@ void Tracker::restart(double time) {
       if (joint.positions != 1 || joint.type == EstimatedJointType::prismatic) continue;  // these have a grid of starts
       guesses_[i].last = last_position(joint, state_, last_time_, model_->positions[i].sd);
     }
+    for (PositionGuess& guess : guesses_) guess.is_given = false;  // it was true of the first rows
     forget_state();
   }
-  for (auto& guess : guesses_) guess.is_given = false;
   state_.started = false;
   grid_.reset();
   return_.reset();
@@ -277,23 +277,36 @@ void Tracker::replay(const std::function<void(ChainFilter&)>& prepare) {
 }
 
 /// A base that begins to move looks like a fault of sensors at first.
-bool Tracker::base_begins_to_move(const BlockMeasurement& block) {
+bool Tracker::base_begins_to_move(const BlockMeasurement& block, const Suspect& suspect) {
   if (filter_.state().base == BaseMode::moving) return false;
   base_.add(block, filter_);
-  if (fit_.worst(filter_).sensor >= 0) base_.suspect(filter_);
+  if (suspect.sensor >= 0) base_.suspect(filter_);
   return base_.mode() == BaseMode::moving;
+}
+
+void Tracker::free_base(ChainFilter& filter) const {
+  filter.set_base(BaseMode::moving);
+  for (std::size_t b = 1; b < model_->bodies.size(); ++b)
+    if (positions_.has_open_heading(*model_, b))
+      filter.free_heading(b, heading_sd(*model_, b, guesses_, filter.up_in_ball(b)));
 }
 
 /// The base has moved for a while; what counted from the start becomes observable.
 void Tracker::let_base_move() {
-  replay([&](ChainFilter& filter) {
-    filter.set_base(BaseMode::moving);
-    for (std::size_t b = 1; b < model_->bodies.size(); ++b)
-      if (positions_.has_open_heading(*model_, b))
-        filter.free_heading(b, heading_sd(*model_, b, guesses_, filter.up_in_ball(b)));
-  });
+  replay([this](ChainFilter& filter) { free_base(filter); });
   positions_.let_base_move(*model_);
   begin_grid();
+}
+
+/// Wherever the position stands that the grid is of: its places stay open.
+void Tracker::let_base_move_in_grid() {
+  const auto let_move = [this](ChainFilter& filter) { free_base(filter); };
+  let_move(filter_);
+  std::ranges::for_each(grid_->candidates(), let_move, &StartGrid::Candidate::filter);
+  positions_.let_base_move(*model_);
+  place_fits_.reset();
+  forget_places();
+  replay_.begin(filter_);
 }
 
 /// Of the first joint position that motion shows from now on, or `share` of certain motion. A revolute one goes before
@@ -376,12 +389,15 @@ Suspect Tracker::unless_turned_beside(Suspect suspect) const {
 }
 
 /// What does not fit wherever a joint that slides stands needs no place to be named. The places are sought anew from
-/// the filter that does not believe it.
+/// the filter that does not believe it. A base that begins to move looks like that at first.
 void Tracker::examine_places(const BlockMeasurement& block) {
-  if (grid_->motion() != JointMotion::prismatic) return;
-  replay_.add(block, filter_);
-  place_fits_.add(*grid_, block.time, block.length);
-  const Suspect common = place_fits_.common(*grid_);
+  const bool slides = grid_->motion() == JointMotion::prismatic;
+  if (slides) {
+    replay_.add(block, filter_);
+    place_fits_.add(*grid_, block.time, block.length);
+  }
+  const Suspect common = slides ? place_fits_.common(*grid_) : Suspect{};
+  if (base_begins_to_move(block, common)) return let_base_move_in_grid();
   if (common == Suspect{}) return;
   seek_place_of_disagreement();
   if (grid_->motion() != JointMotion::prismatic) return forget_places();
@@ -402,7 +418,9 @@ void Tracker::examine_fit() {
   if (worst != Suspect{}) seek_place_of_disagreement();
   if (grid_) return forget_places();  // a position that motion begins to show is where it was supposed to be by chance
   name({.suspect = unless_turned_beside(worst)});
-  const Suspect back = fit_.recovered(filter_, [this](std::size_t s) { return mounts_.may_return(s); });
+  // Of a sensor that is lost or waits nothing is compared, which looks like agreement.
+  const Suspect back =
+      fit_.recovered(filter_, [this](std::size_t s) { return does_not_fit_[s] && mounts_.may_return(s); });
   if (back.sensor >= 0) {
     does_not_fit_[static_cast<std::size_t>(back.sensor)] = is_late_[static_cast<std::size_t>(back.sensor)] = false;
     fit_.reset_sensor(static_cast<std::size_t>(back.sensor));
@@ -425,7 +443,7 @@ Tracker::TurnAtStart Tracker::correct_initial_turn() {
   if (!turn) return TurnAtStart::none;
   if (!turn->tells_sensor())
     return filter_.constant_faults().observed() < undecided_turn_patience ? TurnAtStart::open : TurnAtStart::none;
-  filter_.believe_turn(turn->sensor, turn->turn.mean, turn->turn.covariance);
+  filter_.believe_turn(turn->sensor, turn->turn.mean, turn->turn.covariance, turn->excess);
   turned_[turn->sensor] = {filter_.placed_at(), turn->log_odds / initial_turn_log_odds};
   forget_fit();
   biases_.reset();
@@ -465,7 +483,7 @@ void Tracker::process_block(const BlockMeasurement& block) {
     examine_places(block);
   } else {
     replay_.add(block, filter_);
-    if (base_begins_to_move(block))
+    if (base_begins_to_move(block, fit_.worst(filter_)))
       let_base_move();
     else
       examine_fit();

@@ -71,8 +71,10 @@ class Tracker {
   void forget_places();
   void use_sensor(std::size_t sensor, bool is_used);
   void replay(const std::function<void(ChainFilter&)>& prepare);
-  bool base_begins_to_move(const BlockMeasurement& block);
+  bool base_begins_to_move(const BlockMeasurement& block, const Suspect& suspect);
+  void free_base(ChainFilter& filter) const;
   void let_base_move();
+  void let_base_move_in_grid();
   void show_headings();
   void begin_grid(double share = 1.0);
   void spread_tool();

@@ -109,6 +109,7 @@ std::optional<InitialTurn> initial_turn(const ChainFilter& filter) {
   if (best.log_odds < initial_turn_log_odds) return {};
   return InitialTurn{.sensor = likeliest,
                      .turn = {best.mean, best.covariance},
+                     .excess = best.excess,
                      .log_odds = best.log_odds,
                      .log_odds_of_sensor = (best.explains - next) / best.excess};
 }

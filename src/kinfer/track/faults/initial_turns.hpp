@@ -19,6 +19,7 @@ namespace kinfer::track {
 struct InitialTurn {
   std::size_t sensor = 0;
   MountTurn turn{};
+  double excess = 1.0;              ///< by which the scores that it follows from count less
   double log_odds = 0.0;            ///< against a sensor that sits as it did, ln
   double log_odds_of_sensor = 0.0;  ///< against the next best constant fault
 

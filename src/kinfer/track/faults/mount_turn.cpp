@@ -3,8 +3,10 @@
 
 #include <cmath>
 
+#include "kinfer/base/square.hpp"
 #include "kinfer/geometry/rotation.hpp"
 #include "kinfer/measurement/pose_set.hpp"
+#include "kinfer/track/faults/thresholds.hpp"
 
 namespace kinfer::track {
 namespace {
@@ -33,8 +35,10 @@ MountTurn mount_turn(const ChainFilter& filter, std::size_t sensor) {
   const SensorErrors& state = filter.state().sensors[sensor];
   const Mat3 scale = 0.5 * (state.gyroscope_scale + state.accelerometer_scale);
   const Mat3 twice = scale - scale.transpose();
-  return {.mean = 0.5 * Vec3(twice(2, 1), twice(0, 2), twice(1, 0)),
-          .covariance = mean * filter.covariance().block<18, 18>(scales, scales) * mean.transpose()};
+  MountTurn turn{.mean = 0.5 * Vec3(twice(2, 1), twice(0, 2), twice(1, 0)),
+                 .covariance = mean * filter.covariance().block<18, 18>(scales, scales) * mean.transpose()};
+  turn.covariance.diagonal().array() += square(least_turn_sd);
+  return turn;
 }
 
 SensorTurn size_of(const MountTurn& turn) {

@@ -14,7 +14,7 @@ struct MountTurn {
   Mat3 covariance = Mat3::Zero();  ///< [rad²]
 };
 
-/// The mean of both antisymmetric parts.
+/// The mean of both antisymmetric parts; never quite certain, so that there are odds for and against it.
 MountTurn mount_turn(const ChainFilter& filter, std::size_t sensor);
 
 /// Its angle, with the standard deviation along its direction.

@@ -52,6 +52,7 @@ void ChainFilter::start(const ChainState& state, ConstMatrixRef fast) {
   std::vector<SensorErrors> sensors = std::move(state_.sensors);
   state_ = state;
   state_.sensors = std::move(sensors);
+  if (last_update_) let_biases_walk(state.time - *last_update_);
   placed_ = state.time;
   p_.leftCols(layout.fast).setZero();
   p_.topRows(layout.fast).setZero();
@@ -59,6 +60,21 @@ void ChainFilter::start(const ChainState& state, ConstMatrixRef fast) {
   headings_.reset();
   mean_rates_.reset();
   constant_faults_.by_fault().leftCols(layout.fast).setZero();
+}
+
+/// Over a gap without predictions. A first-order Gauss-Markov process differs from itself by 2σ² at most.
+void ChainFilter::let_biases_walk(double gap) {
+  const double time = std::clamp(gap, 0.0, model_->instability_time);
+  add_bias_walk(*model_, time, p_);
+  widen_bias_distance(time);
+}
+
+/// By what biases may have walked.
+void ChainFilter::widen_bias_distance(double dt) {
+  for (Index s = 0; s < model_->layout.sensors; ++s) {
+    bias_variance_.segment<3>(sensor_rows * s).array() += dt * model_->bias_walk.rate;
+    bias_variance_.segment<3>(sensor_rows * s + 3).array() += dt * model_->bias_walk.force;
+  }
 }
 
 void ChainFilter::widen(Index first, ConstMatrixRef covariance) {
@@ -150,9 +166,9 @@ void ChainFilter::add_posture_walk(double dt) {
     const double walk = dt * rates[s].norm() * per_turn;
     const Index own = sensor_rows * static_cast<Index>(s);
     p_.diagonal().segment<3>(bias).array() += walk;
-    bias_variance_.segment<3>(own).array() += dt * model_->bias_walk.rate;
-    bias_variance_.segment<3>(own + 3).array() += dt * model_->bias_walk.force + walk;
+    bias_variance_.segment<3>(own + 3).array() += walk;
   }
+  widen_bias_distance(dt);
 }
 
 InsLevel ChainFilter::bias_distance(std::size_t s) const {
@@ -405,7 +421,7 @@ void ChainFilter::update(const BlockMeasurement& block) {
 
 /// With the filter's error s θ and the mounting J θ, which is now part of the state, the error is (s − J) θ. It is
 /// independent of the error that a filter without the turn would have (Friedland 1969).
-void ChainFilter::believe_turn(std::size_t sensor, const Vec3& mean, const Mat3& covariance) {
+void ChainFilter::believe_turn(std::size_t sensor, const Vec3& mean, const Mat3& covariance, double excess) {
   const Index estimated = model_->layout.first_geometry,
               scales = model_->layout.sensor_state(static_cast<Index>(sensor)) + SensorIndex::gyroscope_scale;
   MatrixXd off = constant_faults_.by_fault().middleRows<3>(3 * static_cast<Index>(sensor)).transpose();
@@ -414,7 +430,7 @@ void ChainFilter::believe_turn(std::size_t sensor, const Vec3& mean, const Mat3&
   error_.head(estimated) = -off * mean;
   retract(*model_, error_, state_);
   p_.topLeftCorner(estimated, estimated) += off * covariance * off.transpose();
-  constant_faults_.believe_turn(sensor, off, covariance);
+  constant_faults_.believe_turn(sensor, off, covariance, excess);
 }
 
 double ChainFilter::variance(const ScalarRow& row) const {

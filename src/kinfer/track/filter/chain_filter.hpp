@@ -39,7 +39,8 @@ class ChainFilter {
   const MatrixXd& covariance() const { return p_; }
   const Innovations& innovations() const { return innovations_; }
 
-  /// Starts in a posture; `fast`: covariance of the fast states. What is known of sensors and geometry is kept.
+  /// Starts in a posture; `fast`: covariance of the fast states. What is known of sensors and geometry is kept, but
+  /// that biases may have walked since the last update.
   void start(const ChainState& state, ConstMatrixRef fast);
 
   void predict(double time);
@@ -114,8 +115,8 @@ class ChainFilter {
   InsLevel bias_distance(std::size_t sensor) const;
 
   /// A sensor was turned by N(mean, covariance) [rad] in its frame since the first row: that is taken out of the
-  /// estimate, and is part of the sensor's scale matrices from here on.
-  void believe_turn(std::size_t sensor, const Vec3& mean, const Mat3& covariance);
+  /// estimate, and is part of the sensor's scale matrices from here on. By scores that count less by `excess`.
+  void believe_turn(std::size_t sensor, const Vec3& mean, const Mat3& covariance, double excess);
 
   const ConstantFaults& constant_faults() const { return constant_faults_; }
   ConstantFaults& constant_faults() { return constant_faults_; }
@@ -125,6 +126,8 @@ class ChainFilter {
   void forget(Index state);
   double shared_noise(const ScalarRow& row) const;
   void add_posture_walk(double dt);
+  void let_biases_walk(double gap);
+  void widen_bias_distance(double dt);
   double time_since_update() const;
   void follow_change();
   void add_what_means_miss(double dt, const BlockMeasurement& block);

@@ -166,15 +166,6 @@ Mat3 turned_back(const ChainState& state, Index first, double dt) {
   return exp_so3(turn);
 }
 
-/// Biases wander, as their instability says.
-void add_bias_walk(const FilterModel& model, double dt, MatrixXd& p) {
-  for (Index s = 0; s < model.layout.sensors; ++s) {
-    const Index first = model.layout.sensor_state(s);
-    p.diagonal().segment<3>(first + SensorIndex::gyroscope_bias).array() += dt * model.bias_walk.rate;
-    p.diagonal().segment<3>(first + SensorIndex::accelerometer_bias).array() += dt * model.bias_walk.force;
-  }
-}
-
 void rotate_spherical(const FilterModel& model, std::size_t body, const Vec3& turn, ChainState& state) {
   if (model.bodies[body].motion == JointMotion::spherical) state.spherical[body] *= exp_so3(turn);
 }
@@ -283,6 +274,14 @@ void predict_error(const FilterModel& model, const ChainState& state, double dt,
   for (Index i = 0; i < model.layout.positions; ++i)
     mix_columns(transition(model.positions[static_cast<std::size_t>(i)], dt, means), errors.rows(),
                 model.layout.joint_state(i), errors);
+}
+
+void add_bias_walk(const FilterModel& model, double dt, MatrixXd& p) {
+  for (Index s = 0; s < model.layout.sensors; ++s) {
+    const Index first = model.layout.sensor_state(s);
+    p.diagonal().segment<3>(first + SensorIndex::gyroscope_bias).array() += dt * model.bias_walk.rate;
+    p.diagonal().segment<3>(first + SensorIndex::accelerometer_bias).array() += dt * model.bias_walk.force;
+  }
 }
 
 void predict_covariance(const FilterModel& model, const ChainState& state, double dt, MatrixXd& p, ShownMeans means) {

@@ -45,6 +45,9 @@ void predict_mean(const FilterModel& model, double dt, ChainState& state, ShownM
 void predict_error(const FilterModel& model, const ChainState& state, double dt, MatrixXd& errors,
                    ShownMeans means = ShownMeans::rates);
 
+/// Biases wander for `dt` seconds, as their instability says: added to the error state's covariance.
+void add_bias_walk(const FilterModel& model, double dt, MatrixXd& covariance);
+
 /// The error state's covariance (symmetric) after `dt` seconds, at most `longest_step`; `state` is that before.
 void predict_covariance(const FilterModel& model, const ChainState& state, double dt, MatrixXd& covariance,
                         ShownMeans means = ShownMeans::rates);

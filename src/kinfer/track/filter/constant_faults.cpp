@@ -111,9 +111,9 @@ double ConstantFaults::force_scatter(std::size_t sensor) const {
   return std::sqrt(std::max(0.0, 1.0 - (force_direction_[sensor] / observed_).squaredNorm()));
 }
 
-void ConstantFaults::believe_turn(std::size_t sensor, const MatrixXd& off, const Mat3& covariance) {
-  // The belief depends on all faults, by the scores that they share with the turn.
-  const MatrixXd by_fault = information_.middleCols<3>(3 * static_cast<Index>(sensor)) * covariance;
+void ConstantFaults::believe_turn(std::size_t sensor, const MatrixXd& off, const Mat3& covariance, double excess) {
+  // The belief, covariance times score / excess, depends on all faults by the scores that they share with the turn.
+  const MatrixXd by_fault = information_.middleCols<3>(3 * static_cast<Index>(sensor)) * (covariance / excess);
   s_ -= by_fault * off.transpose();
   information_.setZero();
   for (FaultScore& sum : sums_) sum = {};

@@ -52,8 +52,9 @@ class ConstantFaults {
   const MatrixXd& by_fault() const { return s_; }  ///< sᵀ: unknowns of all faults x estimated states
   MatrixXd& by_fault() { return s_; }
 
-  /// The turn of a sensor is believed and part of the state: its error was `off` times the turn.
-  void believe_turn(std::size_t sensor, const MatrixXd& off, const Mat3& covariance);
+  /// The turn of a sensor is believed and part of the state: its error was `off` times the turn. `covariance`: of the
+  /// belief by scores that count less by `excess`.
+  void believe_turn(std::size_t sensor, const MatrixXd& off, const Mat3& covariance, double excess);
 
   // ---- the same over stretches of the log ----
   std::size_t stretches() const { return stretches_; }

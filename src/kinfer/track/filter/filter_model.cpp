@@ -235,6 +235,7 @@ FilterModel filter_model(const TrackingModel& model) {
   const InsLevel drift{std::max(min_bias_instability.rate, model.prior.bias_instability.rate),
                        std::max(min_bias_instability.force, model.prior.bias_instability.force)};
   filter.bias_walk = {2.0 * drift.rate * drift.rate / time, 2.0 * drift.force * drift.force / time};
+  filter.instability_time = time;
   filter.bias = model.prior.bias;
   filter.parameters = slow_covariance(filter, model);
   set_bias_changes(filter, model.prior);

@@ -58,10 +58,11 @@ struct FilterModel {
   std::vector<RevoluteBetweenSensors> revolute;
   std::vector<JointBranch> joints;  ///< of each joint of the tracking model
   double gravity = standard_gravity;
-  InsLevel bias{};       ///< standard deviation of a bias, as its grade has it
-  InsLevel bias_walk{};  ///< variance per second of a bias' random walk
-  InsLevel power_up{};   ///< variance of a bias' change from one power-up to the next
-  MatrixXd parameters;   ///< covariance of sensors' and geometry's states when tracking begins
+  InsLevel bias{};                ///< standard deviation of a bias, as its grade has it
+  InsLevel bias_walk{};           ///< variance per second of a bias' random walk
+  double instability_time = 0.0;  ///< [s] after which a bias has forgotten what it was: it walks no further
+  InsLevel power_up{};            ///< variance of a bias' change from one power-up to the next
+  MatrixXd parameters;            ///< covariance of sensors' and geometry's states when tracking begins
 
   /// Whether a body's spherical joint stands for a loose revolute one.
   bool is_loose(std::size_t body) const;

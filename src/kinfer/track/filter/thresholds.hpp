@@ -114,6 +114,7 @@ inline constexpr double fault_stretch = 0.5;  ///< [s] over which the scores of 
 
 inline constexpr double update_period = 0.02;   ///< [s] at most 50 updates a second
 inline constexpr double longest_bridge = 0.03;  ///< [s] between two blocks without a gap
+inline constexpr int period_steps = 9;          ///< between rows, whose median is the sampling period: four may be lost
 inline constexpr double longest_step = 0.1;     ///< [s] of a prediction
 /// An update after a longer one is linearised again at most so often, until no fast state moves further than this.
 inline constexpr int relinearisations = 6;

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "kinfer/track/filter/thresholds.hpp"
-
 namespace kinfer::track {
 
 RowBlock::RowBlock(std::size_t sensors) {
@@ -18,13 +16,24 @@ void RowBlock::clear() {
   rows_ = 0;
 }
 
+/// The median of the last steps, of two the shorter one: neither rows that are lost nor a pause make it longer.
+void RowBlock::follow_period(double step) {
+  steps_[step_count_++ % steps_.size()] = step;
+  std::array<double, period_steps> ordered = steps_;
+  const std::size_t count = std::min(step_count_, ordered.size());
+  const auto begin = ordered.begin(), end = begin + static_cast<std::ptrdiff_t>(count),
+             middle = begin + static_cast<std::ptrdiff_t>((count - 1) / 2);
+  std::nth_element(begin, middle, end);
+  period_ = *middle;
+}
+
 void RowBlock::add(const InsRow& row) {
   if (rows_ == 0) {
     stands_alone_ = is_beyond_gap(row.time);
     begin_ = row.time;
-  } else if (row.time > end_) {
-    period_ = row.time - end_;
   }
+  if (has_rows_ && row.time > end_) follow_period(row.time - end_);
+  has_rows_ = true;
   end_ = row.time;
   sum_.time += row.time - begin_;
   ++rows_;

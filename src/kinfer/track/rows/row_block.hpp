@@ -3,10 +3,12 @@
 // every row, and is an anti-alias filter for vibration; a single row of them would waste half of the accuracy.
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "kinfer/measurement/ins/ins_row.hpp"
 #include "kinfer/track/filter/chain_filter.hpp"
+#include "kinfer/track/filter/thresholds.hpp"
 
 namespace kinfer::track {
 
@@ -34,11 +36,14 @@ class RowBlock {
 
  private:
   bool is_beyond_gap(double time) const;
+  void follow_period(double step);
 
   BlockMeasurement sum_, mean_;
   int rows_ = 0;
-  bool stands_alone_ = false;
+  bool stands_alone_ = false, has_rows_ = false;  // the second: in any block
   double begin_ = 0.0, end_ = 0.0, period_ = 0.0;
+  std::array<double, period_steps> steps_{};  // [s] between the last rows, of this block or not, in a ring
+  std::size_t step_count_ = 0;                // of all rows
 };
 
 /// One block of several in a row: means weighed by their number of rows.

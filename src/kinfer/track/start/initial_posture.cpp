@@ -24,7 +24,8 @@ struct JointStart {
   Vec3 position = Vec3::Zero(), sd = Vec3::Zero();
   Mat3 spherical = Mat3::Identity();
   Vec3 heading =
-      Vec3::Zero();  ///< of a spherical joint: direction of gravity in its rotating frame, the unobservable axis
+      Vec3::Zero();         ///< of a spherical joint: direction of gravity in its rotating frame, the unobservable axis
+  double heading_sd = 0.0;  ///< [rad] of a rotation about that, where nothing but the user shows it
   std::array<bool, 3> is_known{};
   bool is_blurred = false, is_rough = false;  ///< as of StartPosition
   std::optional<double> lost_sd{};
@@ -100,15 +101,24 @@ struct AcrossByAxis {
   double all = 0.0, on_cone = 0.0;
 };
 
-/// What gravity tells of a position about an axis that has `lever` [m/s²] of it across. Motion makes a position that
-/// gravity shows uncertain; only at an upright axis it is unobservable.
-JointStart shown_by_gravity(double lever, const AcrossByAxis& by_axis, const SeenBody& parent, const SeenBody& child) {
-  lever = std::max(1e-3, lever);
-  const double sd = std::hypot(parent.force_sd, child.force_sd, by_axis.all) / lever,
-               rest_sd = std::hypot(parent.rest_sd, child.rest_sd, by_axis.all) / lever;
+/// How a component of gravity that both sensors see changes with a position: its first two derivatives.
+struct Lever {
+  double first = 0.0;   ///< [m/s² per rad]
+  double second = 0.0;  ///< [m/s² per rad²] counts where the first is nearly zero
+
+  /// [rad] What an error of the component [m/s²] makes: lever σ + ½ second σ² by the larger of both.
+  double angle(double error) const { return error / std::max({1e-3, first, std::sqrt(0.5 * second * error)}); }
+};
+
+/// What gravity tells of a position. Motion makes a position that gravity shows uncertain; only at an upright axis it
+/// is unobservable.
+JointStart shown_by_gravity(const Lever& lever, const AcrossByAxis& by_axis, const SeenBody& parent,
+                            const SeenBody& child) {
+  const double sd = lever.angle(std::hypot(parent.force_sd, child.force_sd, by_axis.all)),
+               rest_sd = lever.angle(std::hypot(parent.rest_sd, child.rest_sd, by_axis.all));
   JointStart start;
   start.sd.x() = std::min(sd, max_observable_sd);
-  start.is_known[0] = rest_sd < max_observable_sd && by_axis.on_cone < max_cone_sd * lever;
+  start.is_known[0] = rest_sd < max_observable_sd && lever.angle(by_axis.on_cone) < max_cone_sd;
   start.is_blurred = std::hypot(parent.force_sd, child.force_sd) > 2.0 * std::hypot(parent.rest_sd, child.rest_sd);
   start.is_rough = start.is_known[0] && sd > max_observable_sd;
   return start;
@@ -126,15 +136,11 @@ double log_odds_of_wrong_start(double apart, double sd) {
   return std::log(wrong_start_prior) + log_uniform - log_normal;
 }
 
-/// The axis tilts what gravity has across it by what it has along it: on level ground a vertical axis is all that.
-JointStart revolute_start(const InsBody& body, const AxisSd& axis, const SeenBody& parent, const SeenBody& child,
-                          const PositionGuess& guess, double time) {
-  const Vec3 u = body.parent_R_axis.transpose() * parent.force, w = body.child_R_axis.transpose() * child.force;
-  const double lever = (body.parent_R_axis.transpose() * parent.gravity).head<2>().norm();
-  const AcrossByAxis by_axis{std::hypot(u.z() * axis.in_parent, w.z() * axis.in_child), std::abs(u.z()) * axis.on_cone};
-  JointStart start = shown_by_gravity(lever, by_axis, parent, child);
+/// Where a position stands by gravity, which tells `start` of it, by what the user states and by what is expected after
+/// a gap.
+JointStart placed(JointStart start, double by_gravity, const PositionGuess& guess, const PositionAfterGap& expected) {
   const bool is_shown = start.is_known[0];
-  const double by_gravity = angle_of(u) - angle_of(w), apart = wrap_to_pi(by_gravity - guess.value),
+  const double apart = wrap_to_pi(by_gravity - guess.value),
                odds = log_odds_of_wrong_start(apart, std::hypot(guess.sd, start.sd.x()));
   if (guess.is_given && is_shown && odds > wrong_start_log_odds) {
     start.position.x() = guess.value + apart;
@@ -145,8 +151,6 @@ JointStart revolute_start(const InsBody& body, const AxisSd& axis, const SeenBod
     start.position.x() = guess.value, start.sd.x() = guess.sd, start.is_known[0] = true, start.is_rough = false;
     return start;
   }
-  const PositionAfterGap expected = guess.last ? after_gap(*guess.last, time, joint_rate(body, parent, child))
-                                               : PositionAfterGap{guess.value, guess.sd};
   start.position.x() = expected.value + wrap_to_pi(by_gravity - expected.value);  // the turn nearest to what was seen
   if (!guess.last) return start;
   start.lost_sd = expected.sd;
@@ -154,6 +158,21 @@ JointStart revolute_start(const InsBody& body, const AxisSd& axis, const SeenBod
   start.position.x() = expected.value, start.is_rough = false;
   if (is_shown) start.sd.x() = expected.sd;
   return start;
+}
+
+/// `rate`: [rad/s] as the gyroscopes show it at `time` [s].
+PositionAfterGap expected_position(const PositionGuess& guess, double time, double rate) {
+  return guess.last ? after_gap(*guess.last, time, rate) : PositionAfterGap{guess.value, guess.sd};
+}
+
+/// The axis tilts what gravity has across it by what it has along it: on level ground a vertical axis is all that.
+JointStart revolute_start(const InsBody& body, const AxisSd& axis, const SeenBody& parent, const SeenBody& child,
+                          const PositionGuess& guess, double time) {
+  const Vec3 u = body.parent_R_axis.transpose() * parent.force, w = body.child_R_axis.transpose() * child.force;
+  const double lever = (body.parent_R_axis.transpose() * parent.gravity).head<2>().norm();
+  const AcrossByAxis by_axis{std::hypot(u.z() * axis.in_parent, w.z() * axis.in_child), std::abs(u.z()) * axis.on_cone};
+  return placed(shown_by_gravity({.first = lever}, by_axis, parent, child), angle_of(u) - angle_of(w), guess,
+                expected_position(guess, time, joint_rate(body, parent, child)));
 }
 
 /// The two angles of a universal joint: R_z(q₂) w = M R_z(−q₁) u, two solutions; the one nearer to what was seen.
@@ -176,8 +195,69 @@ std::array<double, 2> universal_angles(const Vec3& u, const Vec3& w, const Mat3&
   return best;
 }
 
+/// A universal joint between two sensors, in the frame of its second axis when the second angle is zero. There gravity
+/// is F = M R_z(−q₁) u to the parent and R_z(q₂) w to the child: F_z shows the first angle, F_x and F_y the second.
+class UniversalStart {
+ public:
+  UniversalStart(const InsBody& first, const InsBody& second, const SeenBody& parent, const SeenBody& child)
+      : first_(first),
+        second_(second),
+        parent_(parent),
+        child_(child),
+        u_(first.parent_R_axis.transpose() * parent.force),
+        w_(second.child_R_axis.transpose() * child.force),
+        m_(second.parent_R_axis.transpose() * first.child_R_axis) {}
+
+  /// Of both angles.
+  std::array<JointStart, 2> at(const std::array<PositionGuess, 2>& guess, double time) const {
+    const auto near = [](const PositionGuess& g) { return g.last ? g.last->value : g.value; };
+    const Rates rates = rates_at(universal_angles(u_, w_, m_, near(guess[0]), near(guess[1])));
+    const PositionAfterGap expected_first = expected_position(guess[0], time, rates[0]),
+                           expected_second = expected_position(guess[1], time, rates[1]);
+    const double by_gravity = universal_angles(u_, w_, m_, expected_first.value, expected_second.value)[0];
+    const JointStart first = placed(shown_first(by_gravity), by_gravity, guess[0], expected_first);
+    const Vec3 gravity = gravity_at(first.position.x()), change = change_at(first.position.x());
+    JointStart second = placed(shown_by_gravity({.first = w_.head<2>().norm()}, {}, parent_, child_),
+                               angle_of(gravity) - angle_of(w_), guess[1], expected_second);
+    // It was read from gravity as it lies at the first angle.
+    const double by_first =
+        (gravity.x() * change.y() - gravity.y() * change.x()) / std::max(1e-6, gravity.head<2>().squaredNorm());
+    second.sd.x() =
+        std::min(std::hypot(second.sd.x(), by_first * first.sd.x()), std::max(second.sd.x(), max_observable_sd));
+    return {first, second};
+  }
+
+ private:
+  using Rates = std::array<double, 2>;
+
+  Vec3 first_axis() const { return m_.col(2); }
+  Vec3 gravity_at(double first) const { return m_ * (rot_z(-first) * u_); }
+  /// Of that by the first angle.
+  Vec3 change_at(double first) const { return gravity_at(first).cross(first_axis()); }
+
+  JointStart shown_first(double angle) const {
+    const Vec3 change = change_at(angle);
+    return shown_by_gravity({.first = std::abs(change.z()), .second = std::abs(change.cross(first_axis()).z())}, {},
+                            parent_, child_);
+  }
+
+  /// [rad/s] As the gyroscopes show them.
+  Rates rates_at(const std::array<double, 2>& angles) const {
+    const Vec3 of_child = rot_z(angles[1]) * (second_.child_R_axis.transpose() * child_.rate),
+               of_parent = m_ * (rot_z(-angles[0]) * (first_.parent_R_axis.transpose() * parent_.rate)),
+               relative = of_child - of_parent, axis = first_axis();
+    const double first = axis.head<2>().dot(relative.head<2>()) / std::max(1e-6, axis.head<2>().squaredNorm());
+    return {first, relative.z() - axis.z() * first};
+  }
+
+  const InsBody &first_, &second_;
+  const SeenBody &parent_, &child_;
+  Vec3 u_, w_;
+  Mat3 m_;
+};
+
 /// The rotation of a spherical joint nearest to its guess that carries gravity from the parent to the child; its
-/// heading stays as guessed.
+/// heading stays as guessed, and is as uncertain as what the user states.
 JointStart spherical_start(const InsBody& body, const SeenBody& parent, const SeenBody& child, const Mat3& guess,
                            bool is_given) {
   JointStart start;
@@ -186,6 +266,7 @@ JointStart spherical_start(const InsBody& body, const SeenBody& parent, const Se
   start.sd.setConstant(std::hypot(parent.force_sd, child.force_sd) / std::max(1.0, u.norm()));
   start.heading = w.normalized();
   start.is_known.fill(is_given);
+  if (is_given) start.heading_sd = given_start_sd;
   return start;
 }
 
@@ -227,6 +308,12 @@ class PostureStart {
   }
   const PositionGuess& guess(std::size_t b) const { return guess_of(b, 0); }
 
+  /// Of a spherical joint: all of it, or of a loose revolute one the rotation about its axis.
+  bool is_given(std::size_t b) const {
+    const bool about_axis = guess_of(b, 2).is_given;
+    return about_axis && (model_.is_loose(b) || (guess_of(b, 0).is_given && guess_of(b, 1).is_given));
+  }
+
   void place(std::size_t b) {
     const InsBody& body = model_.bodies[b];
     const auto parent = static_cast<std::size_t>(body.parent);
@@ -241,7 +328,7 @@ class PostureStart {
     } else if (body.motion == JointMotion::spherical && is_seen) {
       const Vec3 angles(guess_of(b, 0).value, guess_of(b, 1).value, guess_of(b, 2).value);
       const Mat3 guessed = rot_x(angles.x()) * rot_y(angles.y()) * rot_z(angles.z());
-      starts_[b] = spherical_start(body, before, own, guessed, guess(b).is_given);
+      starts_[b] = spherical_start(body, before, own, guessed, is_given(b));
     } else if (body.motion != JointMotion::fixed) {
       guess_start(b);
     }
@@ -273,17 +360,8 @@ class PostureStart {
         block_.sensors[static_cast<std::size_t>(child->sensor)].force_count > 0) {
       const auto c = static_cast<std::size_t>(child - model_.bodies.begin());
       const SeenBody own = seen_body(model_, block_, *child, before, Mat3::Identity());
-      const Vec3 u = body.parent_R_axis.transpose() * before.force, w = child->child_R_axis.transpose() * own.force;
-      const Mat3 m = child->parent_R_axis.transpose() * body.child_R_axis;
-      const auto angles = universal_angles(u, w, m, guess(b).value, guess(c).value);
-      // Gravity across its own axis determines each.
-      const std::array<double, 2> lever{(m * (rot_z(-angles[0]) * u)).cross(m * Vec3::UnitZ()).head<2>().norm(),
-                                        w.head<2>().norm()};
-      for (std::size_t k = 0; k < 2; ++k) {
-        JointStart& start = starts_[k == 0 ? b : c];
-        start = shown_by_gravity(lever[k], {}, before, own);
-        start.position.x() = angles[k];
-      }
+      const auto starts = UniversalStart(body, *child, before, own).at({guess(b), guess(c)}, block_.time);
+      starts_[b] = starts[0], starts_[c] = starts[1];
       is_second_of_universal_ = static_cast<int>(c);
     }
     seen_[b] = seen_body(model_, block_, body, before, child_from_parent(body, starts_[b]));
@@ -370,7 +448,7 @@ InitialPosture initial_posture(const FilterModel& model, const BlockMeasurement&
       // Gravity does not show the heading: it counts from here, unless motion will show it.
       const bool is_ball = motion_shows_heading(model, b),
                  is_shown = dof == 3 && !start.is_known[0] && (is_ball ? ball_is_shown(b) : base == BaseMode::moving);
-      const double heading_sd = !is_shown ? 0.0
+      const double heading_sd = !is_shown ? start.heading_sd
                                 : is_ball ? track::heading_sd(model, b, guess, start.heading)
                                           : start_heading_sd;
       for (Index j = 0; j < dof && dof == 3; ++j) {
