@@ -179,17 +179,6 @@ TEST(Tracker, SensorsThatWerePoweredUpAgainAreNoFaultAndHideNone) {
   }
 }
 
-/// Without its scale matrices, as an identification hands over that has none.
-Case without_scales(Case given) {
-  for (std::size_t i = 0; i < given.model.parameters.size(); ++i) {
-    const TrackingParameterKind kind = given.model.parameters[i].kind;
-    if (kind != TrackingParameterKind::gyroscope_scale && kind != TrackingParameterKind::accelerometer_scale) continue;
-    given.model.covariance.row(static_cast<Eigen::Index>(i)).setZero();
-    given.model.covariance.col(static_cast<Eigen::Index>(i)).setZero();
-  }
-  return given;
-}
-
 /// Sensor 3 is struck for two seconds, while sensor 1 may have been lost.
 Outcome struck_for_a_moment(const Case& given, double lost_from) {
   const Mat3 turn = exp_so3(3.0 * degree * Vec3(1.0, 1.0, 1.0).normalized());
@@ -218,13 +207,6 @@ TEST(Tracker, ASensorThatAgreesAgainIsUsedThoughAnotherOneIsLost) {
     EXPECT_TRUE(was_named(out, 3)) << lost_from;
     EXPECT_FALSE(is_named_at_the_end(out, 3)) << lost_from;
   }
-}
-
-/// Its mounting was certain: no odds against that.
-TEST(Tracker, ASensorWithoutScaleMatricesIsUsedWhenItAgreesAgain) {
-  const Outcome out = struck_for_a_moment(without_scales(still_excavator()), 1e9);
-  EXPECT_TRUE(was_named(out, 3));
-  EXPECT_FALSE(is_named_at_the_end(out, 3));
 }
 
 TEST(Tracker, NamesASensorThatWasTurned) {

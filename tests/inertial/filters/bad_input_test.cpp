@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "kinfer/inertial/filters/kinfer_filter.hpp"
 #include "kinfer/inertial/filters/orientation.hpp"
 #include "support/carried_sensor.hpp"
 #include "support/orientation_error.hpp"
@@ -63,6 +64,32 @@ TEST(BadInput, NoFailureMakesAFilterReturnNan) {
       for (float& w : axis) w = std::clamp(w, -0.8f, 0.8f);
   });
   broken("free fall", [&](CarriedSensor& c) { set(c.sensor.acceleration, middle, n, Vec3::Constant(1e-30)); });
+}
+
+/// Sampled slowly, while it turns at a steady rate; rates are missing in two rows of ten, and the next row comes a
+/// little early, so that this is no gap yet (three intervals).
+double heading_error_without_some_rates(double period) {
+  constexpr double rate = 0.5;  // [rad/s]
+  KinferFilter filter;
+  double turned = 0.0;
+  for (int k = 0; k < 100; ++k) {
+    InsSample sample;
+    sample.time = period * (k % 10 == 2 ? k - 0.1 : k);
+    sample.acceleration = Vec3(0.0, 0.0, 9.81);
+    sample.has_acceleration = true;
+    sample.has_angular_velocity = k < 2 || k % 10 > 1;
+    if (sample.has_angular_velocity) sample.angular_velocity = Vec3(0.0, 0.0, rate), turned = rate * sample.time;
+    filter.add(sample);
+  }
+  return filter.orientation().angularDistance(quat_exp(Vec3(0.0, 0.0, turned)));
+}
+
+/// Rows without a rate counted as rows with the rate zero, and an update of no time made everything NaN.
+TEST(BadInput, MissingRatesOfSlowSamplingAreNoRatesOfZero) {
+  for (const double period : {0.02, 0.04, 0.05, 0.07, 0.1, 0.12, 0.2}) {
+    const double error = heading_error_without_some_rates(period);
+    EXPECT_LT(error, 0.05) << period;  // nan is not less
+  }
 }
 
 TEST(BadInput, NoRowsAndOneRowAreHandled) {

@@ -87,15 +87,16 @@ void KinferFilter::add(const InsSample& sample) {
 }
 
 bool KinferFilter::update_is_due() const {
-  return period_.elapsed >= options_.update_period - 0.5 * typical_dt_;
+  return period_.elapsed > 0.0 && period_.elapsed >= options_.update_period - 0.5 * typical_dt_;
 }
 
 void KinferFilter::integrate(const InsSample& sample) {
   if (!started_) return start(sample);
   const double dt = sample.time - time_;
   if (!(dt > 0.0)) return;
-  if (!sample.has_angular_velocity && dt < options_.max_hold) return;  // the next rate will cover this time too
-  if (dt >= std::max(options_.max_hold, 3.0 * typical_dt_) && typical_dt_ > 0.0) return bridge_gap(sample, dt);
+  const bool is_gap = dt >= std::max(options_.max_hold, 3.0 * typical_dt_);
+  if (!sample.has_angular_velocity && !is_gap) return;  // the next rate will cover this time too
+  if (is_gap && (typical_dt_ > 0.0 || !sample.has_angular_velocity)) return bridge_gap(sample, dt);
   typical_dt_ = typical_dt_ > 0.0 ? typical_dt_ + 0.1 * (std::min(dt, 2.0 * typical_dt_) - typical_dt_) : dt;
   // Where samples are missing in between, that of the neighbours is the best mean whatever a sample is.
   const bool takes_mean = options_.rate_sample == RateSample::at_its_time || dt > 1.6 * typical_dt_;
