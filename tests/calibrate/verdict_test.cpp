@@ -92,14 +92,19 @@ TEST(Verdict, ErrorsThatNoToleranceOfTheRobotCouldMakeAreNotOfUse) {
                  "unless the instrument is that inaccurate (state its sigma)");
 }
 
-TEST(Verdict, AFaultThatIsNotCorrectedIsNotOfUse) {
-  Calibration c = with_errors(40e-3, 39e-3, 39e-3);
+/// The tracker was moved, which is not corrected.
+void expect_fault_of_moved_base(Calibration& c) {
   c.findings.push_back({.kind = FindingKind::base_moved,
                         .severity = Severity::fault,
                         .rows = {3, 4, 5, 6, 7},
                         .values = {{"distance_m", 0.076}}});
   expect_verdict(c, CalibrationReason::fault_remains, Usability::do_not_use,
                  "in rows 3-7 the tool is 76.0 mm elsewhere");
+}
+
+TEST(Verdict, AFaultThatIsNotCorrectedIsNotOfUse) {
+  Calibration c = with_errors(40e-3, 39e-3, 39e-3);
+  expect_fault_of_moved_base(c);
   c.findings.front().applied = true;
   EXPECT_EQ(judge(c), CalibrationReason::improves_nominal);
 }
@@ -168,12 +173,7 @@ TEST(Verdict, AFaultStandsWithoutADataSheetToo) {
   c.contradiction = Contradiction{.kind = kind_of<PairDistance>, .contradicted = 15, .measured = 15, .error = 0.1};
   expect_verdict(c, CalibrationReason::contradictory, Usability::do_not_use, "15 of 15 pairwise distances");
   c.contradiction.reset();
-  c.findings.push_back({.kind = FindingKind::base_moved,
-                        .severity = Severity::fault,
-                        .rows = {3, 4, 5, 6, 7},
-                        .values = {{"distance_m", 0.076}}});
-  expect_verdict(c, CalibrationReason::fault_remains, Usability::do_not_use,
-                 "in rows 3-7 the tool is 76.0 mm elsewhere");
+  expect_fault_of_moved_base(c);
   EXPECT_EQ(words::verdict(c).find("before"), std::string::npos) << "there is no earlier model: " << words::verdict(c);
   c.findings.front().applied = true;
   EXPECT_EQ(judge(c), CalibrationReason::generalises);

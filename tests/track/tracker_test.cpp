@@ -57,20 +57,31 @@ TEST(Tracker, ATelescopeThatMovesAloneIsFollowedByItsAcceleration) {
   EXPECT_LT(out.largest_sd[telescope], 0.2);
 }
 
-/// While it rests nothing tells where the telescope stands, and the places of its grid stay open.
-TEST(Tracker, ASensorThatTurnsBeforeTheTelescopeIsPlacedIsNamed) {
-  const Case given = crane_with_a_telescope();
-  const Mat3 turn = exp_so3(Vec3(0.03, 0.03, 0.03));
-  constexpr double rest = 3.0, turned_from = 3.0 * rest;  // [s] of the drive; from when on
+constexpr double rest_of_drive = 3.0;  // [s] of the drive's begin
+
+/// A tracker after the drive's rest, five times in a row, with `change` made to each row.
+template <class Change>
+Tracker after_long_rest(const Case& given, Change change) {
   Tracker tracker(given.model);
   InsRow row;
   for (int again = 0; again < 5; ++again)
     for (std::size_t r = 0; r < 600; ++r) {
       test::fill_row(given.drive.recording, r, row);
-      row.time += again * rest;
-      if (row.time > turned_from) turn_sensor(row.sensors[2], turn);
+      row.time += again * rest_of_drive;
+      change(row);
       tracker.add(row);
     }
+  return tracker;
+}
+
+/// While it rests nothing tells where the telescope stands, and the places of its grid stay open.
+TEST(Tracker, ASensorThatTurnsBeforeTheTelescopeIsPlacedIsNamed) {
+  const Case given = crane_with_a_telescope();
+  const Mat3 turn = exp_so3(Vec3(0.03, 0.03, 0.03));
+  constexpr double turned_from = 3.0 * rest_of_drive;
+  const Tracker tracker = after_long_rest(given, [&](InsRow& row) {
+    if (row.time > turned_from) turn_sensor(row.sensors[2], turn);
+  });
   ASSERT_EQ(tracker.state().alarms.size(), 1u);
   EXPECT_EQ(tracker.state().alarms[0].kind, TrackAlarmKind::sensor_moved);
   EXPECT_EQ(tracker.state().alarms[0].sensor, 2);
@@ -105,17 +116,11 @@ class RockedAtRest {
 TEST(Tracker, ABaseThatBeginsToMoveIsSeenWhileTheTelescopeIsNotPlaced) {
   const Case given = crane_with_a_telescope();
   const RockedAtRest rock(given.drive.motion);
-  constexpr double rest = 3.0, from = 2.0 * rest;  // [s] of the drive; from when on
-  Tracker tracker(given.model);
-  InsRow row;
-  for (int again = 0; again < 5; ++again)
-    for (std::size_t r = 0; r < 600; ++r) {
-      test::fill_row(given.drive.recording, r, row);
-      row.time += again * rest;
-      if (row.time > from) rock(row.time - from, row);
-      tracker.add(row);
-      EXPECT_TRUE(tracker.state().alarms.empty()) << row.time;
-    }
+  constexpr double from = 2.0 * rest_of_drive;
+  const Tracker tracker = after_long_rest(given, [&](InsRow& row) {
+    if (row.time > from) rock(row.time - from, row);
+  });
+  EXPECT_TRUE(tracker.state().alarms.empty());
   EXPECT_EQ(tracker.filter().state().base, BaseMode::moving);
   const double error = tracker.state().q[telescope] - given.drive.q(telescope, 0);
   EXPECT_LT(std::abs(error), 4.0 * tracker.state().sd_q[telescope]) << error;

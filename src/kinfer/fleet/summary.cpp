@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "kinfer/estimate/poses/parameter_information.hpp"
-#include "kinfer/kinematics/parameters_by_name.hpp"
+#include "kinfer/kinematics/parameters.hpp"
 
 namespace kinfer::fleet {
 namespace {

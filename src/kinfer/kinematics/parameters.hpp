@@ -3,6 +3,7 @@
 #pragma once
 
 #include <limits>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -79,5 +80,9 @@ VectorXd pack(const ParameterSet& set, const Chain& chain);
 
 /// `nominal` with the free parameters replaced by x.
 Chain unpack(const ParameterSet& set, const Chain& nominal, ConstVectorRef x);
+
+/// Every number that a calibration may free, by its name: what two chains have in common, whatever the order of their
+/// terms.
+std::map<std::string, ParameterAddress> addresses_by_name(const Chain& chain);
 
 }  // namespace kinfer

@@ -62,13 +62,7 @@ Tracker::Tracker(const TrackingModel& model, const TrackOptions& options)
 void Tracker::restart(double time) {
   if (state_.started) {
     restarted_ = time;
-    for (std::size_t i = 0; i < guesses_.size(); ++i) {
-      if (model_positions_[i].joint < 0) continue;
-      const TrackingJoint& joint = tracking_->joints[static_cast<std::size_t>(model_positions_[i].joint)];
-      if (joint.positions != 1 || joint.type == EstimatedJointType::prismatic) continue;  // these have a grid of starts
-      guesses_[i].last = last_position(joint, state_, last_time_, model_->positions[i].sd);
-    }
-    for (PositionGuess& guess : guesses_) guess.is_given = false;  // it was true of the first rows
+    go_on_from(guesses_, *tracking_, *model_, model_positions_, state_, last_time_);
     forget_state();
   }
   state_.started = false;
@@ -298,11 +292,10 @@ void Tracker::let_base_move() {
   begin_grid();
 }
 
-/// Wherever the position stands that the grid is of: its places stay open.
+/// The same wherever the position stands that the grid is of: its places stay open.
 void Tracker::let_base_move_in_grid() {
-  const auto let_move = [this](ChainFilter& filter) { free_base(filter); };
-  let_move(filter_);
-  std::ranges::for_each(grid_->candidates(), let_move, &StartGrid::Candidate::filter);
+  free_base(filter_);
+  for (StartGrid::Candidate& candidate : grid_->candidates()) free_base(candidate.filter);
   positions_.let_base_move(*model_);
   place_fits_.reset();
   forget_places();

@@ -226,6 +226,20 @@ TEST(FreeClocks, AreRelativeToTheSensorThatRotatesMost) {
   EXPECT_TRUE(refined_clocks(problem, fit, {}).empty()) << "a fit without free clocks";
 }
 
+TEST(Clocks, DifferWhereTheyDoAtSomeTimeOfTheRecording) {
+  const SplineGrid three_minutes{10.0, 0.1, 1800};
+  InsUnknowns x;
+  x.errors.resize(2);
+  EXPECT_FALSE(clocks_differ(three_minutes, x));
+  x.errors[1].clock = {.offset = 0.5e-3, .drift = 0.0};
+  EXPECT_FALSE(clocks_differ(three_minutes, x));
+  x.errors[1].clock = {.offset = -2e-3, .drift = 0.0};
+  EXPECT_TRUE(clocks_differ(three_minutes, x));
+  x.errors[1].clock = {.offset = 0.0, .drift = -50e-6};
+  EXPECT_TRUE(clocks_differ(three_minutes, x)) << "by 4.5 ms at both ends";
+  EXPECT_FALSE(clocks_differ({10.0, 0.1, 100}, x));
+}
+
 /// The start of the fit of the hand-moved chain, from its true joint types.
 RefinementSetup chain_setup(const test::HandMovedChain& chain, const OrderedMotion& ordered) {
   std::vector<InitialJoint> starts;

@@ -6,7 +6,7 @@
 
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/geometry/rotation.hpp"
-#include "kinfer/kinematics/parameters_by_name.hpp"
+#include "kinfer/kinematics/parameters.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer {

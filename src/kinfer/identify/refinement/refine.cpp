@@ -94,14 +94,6 @@ std::vector<MatrixXd> shifts_with_fast_motion(const RefinementTask& task, const 
   return shifts(fitted.fit.unknowns.bodies, all.fit.unknowns.bodies);
 }
 
-/// Whether a clock is wrong by so much, at some time, that the caller will correct it and fit again.
-bool clocks_differ(const InsProblem& problem, const InsUnknowns& x) {
-  const double half = 0.5 * (problem.grid.end() - problem.grid.begin);
-  return std::ranges::any_of(x.errors, [&](const InsErrors& e) {
-    return std::abs(e.clock.offset) + half * std::abs(e.clock.drift) > max_clock_offset;
-  });
-}
-
 /// Fits again without some windows; `fitted` then holds that fit.
 HeldOut fit_held_out(const RefinementTask& task, RefinementFit& fitted, const InsCovariance& covariance,
                      const ModelError& error) {
@@ -194,7 +186,7 @@ Result<RefinementAttempt> refine_with(const InsRecording& recording, const Recor
   for (const InsMeasurements& sensor : fitted.setup.problem.sensors) result.noise_floor.push_back(sensor.noise_floor);
   ModelError model_error;
   if (worst_misfit(fitted.setup.problem) > max_rigid_chain_misfit &&
-      !clocks_differ(fitted.setup.problem, fitted.fit.unknowns)) {
+      !clocks_differ(fitted.setup.problem.grid, fitted.fit.unknowns)) {
     LowFrequencyFit slow = fit_low_frequency(task, fitted, observer);
     fitted = std::move(slow.fitted);
     model_error = std::move(slow.error);

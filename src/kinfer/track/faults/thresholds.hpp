@@ -29,8 +29,8 @@ inline constexpr double recovered_limit = 1.2;
 /// A sensor that is named as moved may be turned by so much [rad] about each axis, as standard deviation. It is turned
 /// where its samples are likelier by so much (ln) than with the mounting that it had, and returns where these are.
 inline constexpr double turned_mount_sd = 0.05, mount_log_odds = 3.0;
-/// [rad] No mounting is more certain, also where scale matrices are not estimated; a fiftieth of what consumer sensors
-/// are turned by at least to be named.
+/// [rad] No mounting is more certain, also where scale matrices are not estimated: one that is exactly known has no
+/// odds.
 inline constexpr double least_turn_sd = 1e-5;
 /// [s] over which the scores of turns are summed, after which a change that they show is examined, and how long they
 /// are remembered. It is examined where twice the log-likelihood of a turn is beyond this, and beyond this times what

@@ -9,6 +9,25 @@
 #include "kinfer/track/start/thresholds.hpp"
 
 namespace kinfer::track {
+namespace {
+
+/// Of a joint with one turning position, at `time` [s]. One without a range may be anywhere.
+LastPosition last_position(const TrackingJoint& joint, const TrackState& state, double time, double acceleration_sd) {
+  LastPosition last{.time = time,
+                    .value = state.q[joint.first_position],
+                    .rate = state.qd[joint.first_position],
+                    .sd = state.sd_q[joint.first_position],
+                    .most_turned = max_position_sd,
+                    .speed = std::numeric_limits<double>::infinity(),
+                    .acceleration_sd = acceleration_sd};
+  if (joint.range.empty()) return last;
+  const auto& seen = joint.range.front();
+  last.speed = seen.speed;
+  last.most_turned = std::min(max_position_sd, 0.5 * (seen.upper - seen.lower));
+  return last;
+}
+
+}  // namespace
 
 std::vector<PositionGuess> position_guesses(const TrackingModel& tracking, const std::vector<ModelPosition>& positions,
                                             const std::optional<VectorXd>& start) {
@@ -30,19 +49,15 @@ std::vector<PositionGuess> position_guesses(const TrackingModel& tracking, const
   return guesses;
 }
 
-LastPosition last_position(const TrackingJoint& joint, const TrackState& state, double time, double acceleration_sd) {
-  LastPosition last{.time = time,
-                    .value = state.q[joint.first_position],
-                    .rate = state.qd[joint.first_position],
-                    .sd = state.sd_q[joint.first_position],
-                    .most_turned = max_position_sd,
-                    .speed = std::numeric_limits<double>::infinity(),
-                    .acceleration_sd = acceleration_sd};
-  if (joint.range.empty()) return last;
-  const auto& seen = joint.range.front();
-  last.speed = seen.speed;
-  last.most_turned = std::min(max_position_sd, 0.5 * (seen.upper - seen.lower));
-  return last;
+void go_on_from(std::vector<PositionGuess>& guesses, const TrackingModel& tracking, const FilterModel& model,
+                const std::vector<ModelPosition>& positions, const TrackState& state, double time) {
+  for (std::size_t i = 0; i < guesses.size(); ++i) {
+    guesses[i].is_given = false;
+    if (positions[i].joint < 0) continue;
+    const TrackingJoint& joint = tracking.joints[static_cast<std::size_t>(positions[i].joint)];
+    if (joint.positions != 1 || joint.type == EstimatedJointType::prismatic) continue;
+    guesses[i].last = last_position(joint, state, time, model.positions[i].sd);
+  }
 }
 
 }  // namespace kinfer::track

@@ -15,7 +15,9 @@ namespace kinfer::track {
 std::vector<PositionGuess> position_guesses(const TrackingModel& tracking, const std::vector<ModelPosition>& positions,
                                             const std::optional<VectorXd>& start);
 
-/// Of a joint with one turning position, at `time` [s]. One without a range may be anywhere.
-LastPosition last_position(const TrackingJoint& joint, const TrackState& state, double time, double acceleration_sd);
+/// Before the first row after a gap: what was stated of the first rows is no longer true, and joints with one turning
+/// position were last as `state` has them at `time` [s]. Others keep their guess and have a grid of starts.
+void go_on_from(std::vector<PositionGuess>& guesses, const TrackingModel& tracking, const FilterModel& model,
+                const std::vector<ModelPosition>& positions, const TrackState& state, double time);
 
 }  // namespace kinfer::track

@@ -33,11 +33,15 @@ bool is_significant(const ResidualClock& clock, const SplineGrid& grid, double c
   return (by_offset || by_drift) && largest_shift(clock.correction, grid) > min_clock_offset;
 }
 
-ResidualClock residual_clock(const InsFit& fit, const InsCovariance& covariance, std::size_t sensor, double middle) {
+ClockCorrection correction_of(const InsClock& clock, const SplineGrid& grid) {
+  return {clock.offset, clock.drift, 0.5 * (grid.begin + grid.end())};
+}
+
+ResidualClock residual_clock(const InsFit& fit, const InsCovariance& covariance, const SplineGrid& grid,
+                             std::size_t sensor) {
   const Index at = fit.layout.error[sensor] + fit.layout.clock_error;
   const auto sd = [&](Index k) { return std::sqrt(covariance.model(k, k) * std::max(1.0, covariance.inflation[k])); };
-  const InsClock& clock = fit.unknowns.errors[sensor].clock;
-  return {{clock.offset, clock.drift, middle}, sd(at), sd(at + 1)};
+  return {correction_of(fit.unknowns.errors[sensor].clock, grid), sd(at), sd(at + 1)};
 }
 
 /// Frees the clocks of a problem in this object's scope and restores clock priors and noise at its end, unless kept.
@@ -108,13 +112,18 @@ void refit_with_free_clocks(InsProblem& problem, InsFit& fit, const InsFitOption
   fit = std::move(trial);
 }
 
+bool clocks_differ(const SplineGrid& grid, const InsUnknowns& x) {
+  return std::ranges::any_of(x.errors, [&](const InsErrors& errors) {
+    return largest_shift(correction_of(errors.clock, grid), grid) > max_clock_offset;
+  });
+}
+
 std::vector<ResidualClock> refined_clocks(const InsProblem& problem, const InsFit& fit,
                                           const InsCovariance& covariance) {
   std::vector<ResidualClock> clocks;
   if (!fit.layout.has_clocks) return clocks;
-  const double middle = 0.5 * (problem.grid.begin + problem.grid.end());
   for (std::size_t s = 0; s < fit.unknowns.errors.size(); ++s)
-    clocks.push_back(residual_clock(fit, covariance, s, middle));
+    clocks.push_back(residual_clock(fit, covariance, problem.grid, s));
   return clocks;
 }
 

@@ -17,6 +17,10 @@ bool clocks_are_doubtful(InsProblem& problem, const InsFit& fit, int threads);
 /// Continues a fit with free clocks. Problem and fit stay unchanged if no clock then differs significantly.
 void refit_with_free_clocks(InsProblem& problem, InsFit& fit, const InsFitOptions& options, const Observer& observer);
 
+/// Whether a clock is wrong by so much, at some time of the recording, that it is corrected before slow motion alone is
+/// fitted, where clocks are neglected.
+bool clocks_differ(const SplineGrid& grid, const InsUnknowns& x);
+
 /// One per sensor; empty if the clocks were not free.
 std::vector<ResidualClock> refined_clocks(const InsProblem& problem, const InsFit& fit,
                                           const InsCovariance& covariance);
