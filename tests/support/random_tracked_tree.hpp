@@ -21,8 +21,10 @@ inline TrackingBody random_body(int parent, int sensor, int joint, TrackingMotio
   return body;
 }
 
-/// A tree: hinge, universal joint, slide, ball, fixed segment; the ball hangs beside the slide.
-inline TrackingModel random_tree(Rng& rng) {
+/// A tree: hinge, universal joint, slide, ball, fixed segment; the ball hangs beside the slide. Nothing of it is known
+/// to better than 1 rad or 1 m: the hinge's zero, the turn of its segment and all points are unseen, but for a hinge
+/// that is known.
+inline TrackingModel random_tree(Rng& rng, bool has_known_hinge = false) {
   using Kind = TrackingParameterKind;
   TrackingModel model;
   model.bodies = {TrackingBody{.sensor = 0},
@@ -48,7 +50,8 @@ inline TrackingModel random_tree(Rng& rng) {
       model.sensors.push_back(made);
     }
     if (b == 0) continue;
-    for (int c = 0; c < 2; ++c) model.parameters.push_back({Kind::child_rotation, b, c});
+    for (int c = 0; c < (b == 1 && !has_known_hinge ? 3 : 2); ++c)
+      model.parameters.push_back({Kind::child_rotation, b, c});
     for (int c = 0; c < 2; ++c) model.parameters.push_back({Kind::parent_rotation, b, c});
     for (int c = 0; c < 3; ++c) model.parameters.push_back({Kind::point_in_child, b, c});
     for (int c = 0; c < 3; ++c) model.parameters.push_back({Kind::point_in_parent, b, c});
@@ -72,6 +75,10 @@ inline track::ChainState random_state(const track::FilterModel& model, Rng& rng)
       state.spherical[b] = random_turn(rng);
       for (Eigen::Index k = 0; k < 3; ++k) state.joints[track::position_states * (model.layout.position[b] + k)] = 0.0;
     }
+  for (const track::UnknownZero& zero : model.unknown_zeros) state.start[zero.position] = random_vector(rng).x();
+  for (const track::UnknownTurn& turn : model.unknown_turns)
+    state.turned[static_cast<Eigen::Index>(turn.body)] = random_vector(rng).x();
+  for (const track::UnknownPoint& point : model.unknown_points) state.moved[point.body] = random_vector(rng);
   return state;
 }
 

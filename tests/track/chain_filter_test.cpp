@@ -30,6 +30,7 @@ struct TrackedTree {
     Rng rng(seed);
     model = std::make_shared<FilterModel>(filter_model(test::random_tree(rng)));
     model->prismatic.clear();
+    model->unknown_turns.clear();  // noise by tilts
     model->parameters = spread(model->layout.size - model->layout.fast, 1e-2);
     for (SensorSettings& s : model->sensors)
       s.white = {0.01, 0.1}, s.persistent = {0.002, 0.03}, s.slow = {0.02, 0.2}, s.sample_period = 0.005;
@@ -72,7 +73,7 @@ struct TrackedTree {
     const FilterLayout& layout = model->layout;
     MatrixXd h = MatrixXd::Zero(layout.rows(), layout.size);
     h.leftCols(layout.fast) = m.by_fast;
-    h.rightCols(layout.size - layout.first_geometry) = m.by_geometry;
+    h.rightCols(layout.size - layout.first_unseen) = m.by_geometry;
     for (Index s = 0; s < layout.sensors; ++s)
       for (Index k = 0; k < 3; ++k) {
         const Index own = layout.sensor_state(s);
@@ -125,7 +126,7 @@ TEST(ChainFilter, AnUpdateIsKalmansExceptThatGeometryIsOnlyConsidered) {
     EXPECT_LT((innovation.segment<3>(row) - (block.sensors[i].rate - before.segment<3>(row))).norm(), 1e-12);
     EXPECT_LT((innovation.segment<3>(row + 3) - (block.sensors[i].force - before.segment<3>(row + 3))).norm(), 1e-12);
   }
-  const Index estimated = tree.model->layout.first_geometry, geometry = tree.model->layout.size - estimated;
+  const Index estimated = tree.model->layout.first_point, geometry = tree.model->layout.size - estimated;
   MatrixXd expected = p - gain * s * gain.transpose();
   expected.bottomRightCorner(geometry, geometry) = p.bottomRightCorner(geometry, geometry);
   EXPECT_LT((filter.covariance() - expected).cwiseAbs().maxCoeff(), 1e-10);
@@ -180,7 +181,7 @@ TEST(ChainFilter, MeasurementsThatAreMissingAreThoseOfInfiniteNoise) {
   filter.update(block);
   const MatrixXd w = p * h.transpose(), s = h * w + MatrixXd(noise.asDiagonal());
   MatrixXd expected = p - w * s.ldlt().solve(MatrixXd(w.transpose()));
-  const Index geometry = tree.model->layout.size - tree.model->layout.first_geometry;
+  const Index geometry = tree.model->layout.size - tree.model->layout.first_point;
   expected.bottomRightCorner(geometry, geometry) = p.bottomRightCorner(geometry, geometry);
   EXPECT_LT((filter.covariance() - expected).cwiseAbs().maxCoeff(), 1e-9);
   EXPECT_EQ(filter.innovations().rows[1], 3);
@@ -214,7 +215,7 @@ TEST(ChainFilter, AScalarMeasurementIsKalmansToo) {
   const VectorXd w = p * h;
   const double variance = h.dot(w) + 1e-4;
   MatrixXd expected = p - w * w.transpose() / variance;
-  const Index geometry = tree.model->layout.size - tree.model->layout.first_geometry;
+  const Index geometry = tree.model->layout.size - tree.model->layout.first_point;
   expected.bottomRightCorner(geometry, geometry) = p.bottomRightCorner(geometry, geometry);
   EXPECT_LT((filter.covariance() - expected).cwiseAbs().maxCoeff(), 1e-14);
   EXPECT_NEAR(filter.state().joints[0] - tree.state.joints[0], 0.01 * w[at] / variance, 1e-14);
@@ -224,7 +225,7 @@ TEST(ChainFilter, AScalarMeasurementIsKalmansToo) {
 TEST(ChainFilter, NoiseThatIsInAStateAlreadyIsTakenOutOfIt) {
   const TrackedTree tree(11);
   ChainFilter filter = tree.filter();
-  const Index n = tree.model->layout.size, estimated = tree.model->layout.first_geometry;
+  const Index n = tree.model->layout.size, estimated = tree.model->layout.first_point;
   const Index bias = tree.model->layout.sensor_state(1), at = tree.model->layout.joint_state(0);
   const double noise = 1e-5, covariance = -4e-5;
   MatrixXd p = MatrixXd::Zero(n + 1, n + 1);
@@ -374,7 +375,7 @@ TEST(ChainFilter, BiasesOfForceAreForgottenWithTheAngleTurnedThrough) {
 
 TEST(FilterModel, AxisSdsAreThoseOfTheDirectionsOnEachSegment) {
   Rng rng(5);
-  TrackingModel model = test::random_tree(rng);
+  TrackingModel model = test::random_tree(rng, true);
   const FilterModel filter = filter_model(model);
   bool is_any = false;
   for (const SensorSettings& sensor : filter.sensors) {

@@ -63,6 +63,12 @@ VectorXd error_between(const FilterModel& model, const ChainState& from, const C
           to.sensors[s].accelerometer_scale(k / 3, k % 3) - from.sensors[s].accelerometer_scale(k / 3, k % 3);
     }
   }
+  for (const UnknownZero& zero : model.unknown_zeros)
+    e[zero.state] = to.start[zero.position] - from.start[zero.position];
+  for (const UnknownTurn& turn : model.unknown_turns)
+    e[turn.state] = to.turned[static_cast<Index>(turn.body)] - from.turned[static_cast<Index>(turn.body)];
+  for (const UnknownPoint& point : model.unknown_points)
+    e.segment<3>(point.state) = to.moved[point.body] - from.moved[point.body];
   return e;
 }
 

@@ -54,6 +54,9 @@ MatrixXd rows_by_differences(const Tree& tree, std::size_t joint) {
     std::vector<InsState> states{tree.state.base_state(model.gravity)};
     for (std::size_t b = 1; b < model.bodies.size(); ++b) {
       InsBody body = model.bodies[b];
+      const ParentSide side = parent_side(model, tree.state, b);
+      body.parent_R_axis = side.parent_R_axis;
+      body.point_in_parent = side.point_in_parent;
       if (body.motion == JointMotion::spherical) body.parent_R_axis = body.parent_R_axis * tree.state.spherical[b];
       JointKinematicState q{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
       for (Index i = 0; i < degrees_of_freedom(body.motion); ++i)

@@ -47,9 +47,12 @@ struct CarriedTool {
       Mat3 turn = Mat3::Identity();
       if (body.motion == JointMotion::revolute) turn = rot_z(q);
       if (body.motion == JointMotion::spherical) turn = moved.spherical[b];
-      const Mat3 rotation = body.parent_R_axis * turn * body.child_R_axis.transpose();
-      Vec3 position = body.point_in_parent - rotation * body.point_in_child;
-      if (is_slide) position += q * body.parent_R_axis.col(2);
+      FilterModel changed = model;
+      changed.bodies[b] = body;
+      const auto [parent_R_axis, point_in_parent, turned] = parent_side(changed, moved, b);
+      const Mat3 rotation = parent_R_axis * turn * body.child_R_axis.transpose();
+      Vec3 position = point_in_parent - rotation * body.point_in_child;
+      if (is_slide) position += q * parent_R_axis.col(2);
       base_T_body.push_back(base_T_body[static_cast<std::size_t>(body.parent)] * Pose{rotation, position});
     }
     return base_T_body[static_cast<std::size_t>(tracking.tool.body)] * tracking.tool.body_T_tool;
@@ -110,9 +113,12 @@ TEST(ReadOut, PositionsOfOneAxisAreThoseOfTheFilterWithItsStandardDeviations) {
   const Index expected[] = {0, 1, 2, 3};  // hinge, both axes of the universal joint, slide
   for (const Index i : expected) {
     const Index at = t.model.layout.joint_state(i);
-    EXPECT_EQ(out.q[i], t.state.joints[position_states * i]);
+    EXPECT_EQ(out.q[i], t.state.joints[position_states * i] - t.state.start[i]);
     EXPECT_EQ(out.qd[i], t.state.joints[position_states * i + 1]);
-    EXPECT_NEAR(out.sd_q[i], std::sqrt(t.covariance(at, at)), 1e-15);
+    const UnknownZero* zero = t.model.unknown_zero(i);  // of the hinge, which counts from its start
+    VectorXd since_start = VectorXd::Unit(t.covariance.rows(), at);
+    if (zero) since_start[zero->state] = -1.0;
+    EXPECT_NEAR(out.sd_q[i], std::sqrt(since_start.dot(t.covariance * since_start)), 1e-15);
     EXPECT_NEAR(out.sd_qd[i], std::sqrt(t.covariance(at + 1, at + 1)), 1e-15);
   }
   EXPECT_LT((out.world_q_base.toRotationMatrix() - t.state.world_R_base).norm(), 1e-12);

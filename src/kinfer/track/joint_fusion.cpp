@@ -6,7 +6,6 @@
 
 #include "kinfer/base/angle.hpp"
 #include "kinfer/base/square.hpp"
-#include "kinfer/evidence/tracking/body_poses.hpp"
 #include "kinfer/geometry/cardan_angles.hpp"
 #include "kinfer/track/filter/thresholds.hpp"
 #include "kinfer/track/readout/readout.hpp"
@@ -168,9 +167,11 @@ void JointFusion::fuse(const TrackingModel& model, const ComposedFilters& compos
   const double own_variance = std::max(0.0, chain_variance - joint.offset.common / of.positions);
   approach(joint, own_variance, composed_variance, dt);
   if (joint.share <= 0.0) return;
+  double turned = 0.0;  // [rad] the last position
   for (Index i = 0; i < of.positions; ++i) {
     const double offset = i == 0 ? joint.offset.value : 0.0, q = composed.state().q[first + i] + offset;
-    chain.q[first + i] += joint.share * wrap_to_pi(q - chain.q[first + i]);
+    turned = joint.share * wrap_to_pi(q - chain.q[first + i]);
+    chain.q[first + i] += turned;
     if (std::isfinite(composed.state().qd[first + i]))
       chain.qd[first + i] += joint.share * (composed.state().qd[first + i] - chain.qd[first + i]);
   }
@@ -178,8 +179,8 @@ void JointFusion::fuse(const TrackingModel& model, const ComposedFilters& compos
     status.parent_q_child = status.parent_q_child.slerp(joint.share, other.parent_q_child);
     return;
   }
-  const TrackingBody& body = model.bodies[static_cast<std::size_t>(joint.first_body)];
-  status.parent_q_child = Quat(body_pose(body, chain.q.segment(first, 1)).rotation);
+  const Vec3 axis = model.bodies[static_cast<std::size_t>(joint.first_body)].parent_R_axis.col(2);
+  status.parent_q_child = Quat(exp_so3(turned * axis)) * status.parent_q_child;
 }
 
 void JointFusion::apply(const TrackingModel& model, const ComposedFilters& composed, const Usable& usable,

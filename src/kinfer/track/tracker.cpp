@@ -24,7 +24,7 @@ Tracker::Tracker(const TrackingModel& model, const TrackOptions& options)
     : tracking_(std::make_shared<TrackingModel>(model)),
       model_(std::make_shared<FilterModel>(filter_model(model))),
       model_positions_(model_positions(model, *model_)),
-      guesses_(position_guesses(model, model_positions_, options.start)),
+      guesses_(position_guesses(model, *model_, model_positions_, options.start)),
       filter_(model_),
       motion_(*model_),
       spread_(model, *model_),
@@ -62,7 +62,7 @@ Tracker::Tracker(const TrackingModel& model, const TrackOptions& options)
 void Tracker::restart(double time) {
   if (state_.started) {
     restarted_ = time;
-    go_on_from(guesses_, *tracking_, *model_, model_positions_, state_, last_time_);
+    go_on_from(guesses_, *tracking_, filter_, model_positions_, state_, last_time_);
     forget_state();
   }
   state_.started = false;
@@ -184,7 +184,8 @@ void Tracker::try_start() {
   const int base = model_->bodies.front().sensor;
   if (base >= 0 && block.sensors[static_cast<std::size_t>(base)].force_count == 0) return;
   base_.add(block, filter_);
-  InitialPosture posture = initial_posture(*model_, block, guesses_, base_.mode());
+  const FilterModel turned = turned_model(*model_, filter_.state());
+  InitialPosture posture = initial_posture(turned, block, guesses_, base_.mode());
   if (!waits_since_) waits_since_ = block.time;
   const bool is_rough = std::ranges::any_of(posture.positions, &StartPosition::is_rough);
   if (is_rough && block.time - *waits_since_ < start_patience) return;
@@ -197,6 +198,9 @@ void Tracker::try_start() {
   }
   start_in(posture, filter_);
   follow_turns(posture, block, guesses_, filter_);
+  if (!filter_.counts_from_start())
+    for (const UnknownZero& zero : model_->unknown_zeros)
+      filter_.count_from_start(zero.position, guesses_[static_cast<std::size_t>(zero.position)].stated, given_start_sd);
   positions_.begin(*model_, posture, filter_.state().base);
   fusion_.reset();
   begin_grid();
@@ -226,14 +230,16 @@ void Tracker::list_wrong_starts(const InitialPosture& posture) {
 }
 
 void Tracker::resolve_start(const BlockMeasurement& block) {
-  grid_->update(block, motion_.tells_of(*model_, grid_->body()));
+  const std::size_t body = grid_->body();
+  grid_->update(
+      block, grid_->is_of_limb() ? filter_.shows_turn(*model_->unknown_turn(body)) : motion_.tells_of(*model_, body));
   filter_ = grid_->stated();
   if (!grid_->is_decided()) {
     const double patience = grid_->entropy() > open_entropy ? untold_patience : undecided_patience;
     if (block.time - grid_->untold_since() > patience) give_up_grid(block.time);
     return;
   }
-  positions_.decide(*model_, grid_->body());
+  if (!grid_->is_of_limb()) positions_.decide(*model_, body);
   grid_.reset();
   forget_places();
   begin_grid();
@@ -242,7 +248,10 @@ void Tracker::resolve_start(const BlockMeasurement& block) {
 
 /// What seemed to be motion was none, or is over: the position counts from where it seems to be, as before.
 void Tracker::give_up_grid(double time) {
-  filter_.count_from_here(model_->layout.position[grid_->body()]);
+  if (grid_->is_of_limb())
+    filter_.forget_turn(grid_->body());
+  else
+    filter_.count_from_here(grid_->position());
   grid_.reset();
   suspicion_from_ = time + suspicion_again;
   forget_places();
@@ -302,13 +311,35 @@ void Tracker::let_base_move_in_grid() {
   replay_.begin(filter_);
 }
 
+/// Points that a still base left open, once the base moves and all that they are multiplied with is known.
+bool Tracker::shows_points() const {
+  if (grid_ || filter_.state().base == BaseMode::still) return false;
+  return std::ranges::all_of(model_->unknown_turns, [&](const UnknownTurn& t) { return filter_.knows_turn(t.body); }) &&
+         std::ranges::all_of(model_->unknown_points, [&](const UnknownPoint& point) {
+           const Index at = model_->layout.position[point.body];
+           return at < 0 || positions_[static_cast<std::size_t>(at)].is_known;
+         });
+}
+
+/// The first body of a limb whose turn shows, since the base is tilted and it is known where its segment points; 0:
+/// none.
+std::size_t Tracker::first_unknown_limb() const {
+  for (const UnknownTurn& turn : model_->unknown_turns) {
+    const auto position = static_cast<std::size_t>(model_->layout.position[turn.segment]);
+    if (!filter_.knows_turn(turn.body) && positions_[position].is_known && filter_.shows_turn(turn)) return turn.body;
+  }
+  return 0;
+}
+
 /// Of the first joint position that motion shows from now on, or `share` of certain motion. A revolute one goes before
 /// one along a joint: while it stands where it does by chance, a filter that believes in it is soon beyond repair.
 void Tracker::begin_grid(double share) {
   if (grid_ && model_->bodies[grid_->body()].motion == JointMotion::revolute) return;
   const auto is_told = [&](std::size_t b) { return motion_.tells_of(*model_, b, share); };
   if (const std::size_t turns = positions_.first_open(*model_, JointMotion::revolute, is_told); turns > 0)
-    grid_ = StartGrid::around(filter_, turns, positions_.start_sd(*model_, turns));
+    grid_ = StartGrid::around(filter_, turns, positions_[static_cast<std::size_t>(model_->layout.position[turns])]);
+  else if (const std::size_t limb = first_unknown_limb(); limb > 0)
+    grid_ = StartGrid::of_limb(filter_, limb);
   else if (const std::size_t slides = positions_.first_open(*model_, JointMotion::prismatic, is_told);
            slides > 0 && !grid_) {
     place_fits_.reset();
@@ -319,7 +350,7 @@ void Tracker::begin_grid(double share) {
 /// Where positions count from the start the tool is as uncertain as what they count from.
 void Tracker::spread_tool() {
   for (std::size_t b = 1; b < unknown_.size(); ++b) {
-    const bool is_in_grid = grid_ && grid_->body() == b;
+    const bool is_in_grid = grid_ && grid_->body() == b && !grid_->is_of_limb();
     unknown_[b] = is_in_grid ? 0.0 : positions_.start_sd(*model_, b);
   }
   tool_.spread(*model_, filter_.state(), filter_.covariance(), unknown_);
@@ -460,6 +491,7 @@ void Tracker::process_block(const BlockMeasurement& block) {
   motion_.add(block, filter_);
   if (!grid_) show_headings();
   begin_grid();
+  filter_.estimate_points(shows_points());
   if (grid_) {
     mounts_.reset();
     resolve_start(block);

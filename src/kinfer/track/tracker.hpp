@@ -76,6 +76,8 @@ class Tracker {
   void let_base_move();
   void let_base_move_in_grid();
   void show_headings();
+  bool shows_points() const;
+  std::size_t first_unknown_limb() const;
   void begin_grid(double share = 1.0);
   void spread_tool();
   void widen_unknown();

@@ -11,7 +11,7 @@ namespace kinfer::track {
 
 /// Positions whose zero is not known; the grid has the spread of its own.
 void Tracker::widen_unknown() {
-  const Index in_grid = grid_ ? model_->layout.position[grid_->body()] : -1;
+  const Index in_grid = grid_ ? grid_->position() : -1;
   for (std::size_t i = 0; i < positions_.size(); ++i) {
     const int q = model_positions_[i].q;
     if (q < 0 || static_cast<Index>(i) == in_grid) continue;
@@ -30,9 +30,10 @@ void Tracker::read_out(double time) {
     joint.source = JointSource::chain;
     joint.reference = JointReference::chain;
   }
-  const Index in_grid = grid_ ? model_->layout.position[grid_->body()] : -1;  // as uncertain as its places are apart
+  const Index in_grid = grid_ ? grid_->position() : -1;  // as uncertain as its places are apart
   for (std::size_t i = 0; i < positions_.size(); ++i)
-    if (!positions_[i].is_known && static_cast<Index>(i) != in_grid && model_positions_[i].joint >= 0)
+    if (model_positions_[i].joint >= 0 &&
+        (positions_[i].is_relative || (!positions_[i].is_known && static_cast<Index>(i) != in_grid)))
       chain_state_.joints[static_cast<std::size_t>(model_positions_[i].joint)].reference = JointReference::start;
   chain_state_.time = time;
   chain_state_.base_T_tool = tool_.tool();
@@ -46,6 +47,10 @@ void Tracker::read_out(double time) {
   is_settled_.assign(is_settled_.size(), true);
   for (std::size_t i = 0; i < positions_.size(); ++i)
     if (positions_[i].is_open) is_settled_[static_cast<std::size_t>(model_positions_[i].joint)] = false;
+  // Single sensors know nothing of how limbs are turned on their segments.
+  for (const UnknownTurn& turn : model_->unknown_turns)
+    if (filter_.knows_turn(turn.body) || filter_.tilt_of(turn) > 0.0)
+      is_settled_[static_cast<std::size_t>(tracking_->bodies[turn.body].joint)] = false;
   state_headings();
   fusion_.apply(*tracking_, composed_, {.is_sound = is_sound_, .is_settled = is_settled_, .heading_sd = heading_sd_},
                 state_);

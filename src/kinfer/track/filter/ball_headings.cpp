@@ -79,8 +79,8 @@ void BallHeadings::begin_update(const FilterModel& model, const ChainState& stat
     const InsBody& body = model.bodies[b];
     Mat3 turn = state.spherical[b];
     if (body.motion == JointMotion::revolute) turn = rot_z(state.joints[position_states * model.layout.position[b]]);
-    world_R_body_[b] = world_R_body_[static_cast<std::size_t>(body.parent)] * body.parent_R_axis * turn *
-                       body.child_R_axis.transpose();
+    world_R_body_[b] = world_R_body_[static_cast<std::size_t>(body.parent)] *
+                       parent_side(model, state, b).parent_R_axis * turn * body.child_R_axis.transpose();
   }
   for (Ball& ball : balls_) {
     ball.up = (world_R_body_[ball.body] * model.bodies[ball.body].child_R_axis).row(2);

@@ -38,6 +38,9 @@ ChainFilter::ChainFilter(std::shared_ptr<const FilterModel> model)
   last_value_ = change_ = change_of_change_ = VectorXd::Zero(layout.rows());
   error_ = column_ = VectorXd::Zero(layout.size);
   unused_w_ = MatrixXd::Zero(layout.size, sensor_rows);
+  is_turn_known_.assign(model_->unknown_turns.size(), false);
+  tilted_.assign(model_->unknown_turns.size(), 0.0);
+  by_turn_ = VectorXd::Zero(layout.rows());
   bias_variance_ = VectorXd::Zero(layout.rows());
   for (Index s = 0; s < layout.sensors; ++s) {
     auto own = bias_variance_.segment<sensor_rows>(sensor_rows * s);
@@ -49,11 +52,15 @@ ChainFilter::ChainFilter(std::shared_ptr<const FilterModel> model)
 void ChainFilter::start(const ChainState& state, ConstMatrixRef fast) {
   const FilterLayout& layout = model_->layout;
   KINFER_EXPECT(fast.rows() == layout.fast && fast.cols() == layout.fast);
-  std::vector<SensorErrors> sensors = std::move(state_.sensors);
+  ChainState before = std::move(state_);
   state_ = state;
-  state_.sensors = std::move(sensors);
+  state_.sensors = std::move(before.sensors);
+  state_.start = std::move(before.start);
+  state_.turned = std::move(before.turned);
+  state_.moved = std::move(before.moved);
   if (last_update_) let_biases_walk(state.time - *last_update_);
   placed_ = state.time;
+  std::ranges::fill(tilted_, 0.0);
   p_.leftCols(layout.fast).setZero();
   p_.topRows(layout.fast).setZero();
   p_.topLeftCorner(layout.fast, layout.fast) = fast;
@@ -113,8 +120,101 @@ void ChainFilter::place(Index position, double value, double sd) {
   p_(at, at) = sd * sd;
 }
 
+void ChainFilter::count_from_start(Index position, std::optional<double> stated, double sd) {
+  const UnknownZero& zero = *model_->unknown_zero(position);
+  const Index at = model_->layout.joint_state(position);
+  p_.row(zero.state) = p_.row(at);
+  p_.col(zero.state) = p_.col(at);
+  p_(zero.state, zero.state) = p_(at, at) + (stated ? sd * sd : 0.0);
+  constant_faults_.by_fault().col(zero.state) = constant_faults_.by_fault().col(at);
+  if (stated) state_.start[position] = state_.joints[position_states * position] - *stated;
+  counts_from_start_ = true;
+}
+
+void ChainFilter::turn_start(Index position, double turn, double sd, double lost_sd) {
+  const UnknownZero& zero = *model_->unknown_zero(position);
+  const Index at = model_->layout.joint_state(position);
+  state_.joints[position_states * position] += turn;
+  state_.start[position] += turn;
+  p_(at, at) += sd * sd;
+  p_(zero.state, zero.state) += sd * sd + lost_sd * lost_sd;
+  p_(at, zero.state) += sd * sd;
+  p_(zero.state, at) += sd * sd;
+  placed_ = state_.time;
+}
+
+bool ChainFilter::knows_turn(std::size_t body) const {
+  for (std::size_t k = 0; k < is_turn_known_.size(); ++k)
+    if (model_->unknown_turns[k].body == body) return is_turn_known_[k];
+  return true;
+}
+
+void ChainFilter::turn_limb(std::size_t body, double turn, double sd) {
+  const Index state = model_->unknown_turn(body)->state;
+  forget(state);
+  constant_faults_.by_fault().col(state).setZero();
+  state_.turned[static_cast<Index>(body)] += turn;
+  p_(state, state) = sd * sd;
+  free_first_joint(body, 2.0 * square(tilt_of(*model_->unknown_turn(body))));
+  for (std::size_t k = 0; k < is_turn_known_.size(); ++k)
+    if (model_->unknown_turns[k].body == body) is_turn_known_[k] = true;
+  placed_ = state_.time;
+}
+
+/// By the chord of the circle that the tilt's direction is anywhere on. `variance`: [rad²] of the angles.
+void ChainFilter::free_first_joint(std::size_t body, double variance) {
+  if (model_->bodies[body].motion == JointMotion::prismatic) return;
+  for (Index i = 0; i < degrees_of_freedom(model_->bodies[body].motion); ++i) {
+    const Index at = model_->layout.joint_state(model_->layout.position[body] + i);
+    p_(at, at) += variance;
+  }
+}
+
+void ChainFilter::forget_turn(std::size_t body) {
+  const Index state = model_->unknown_turn(body)->state;
+  forget(state);
+  constant_faults_.by_fault().col(state).setZero();
+  for (std::size_t k = 0; k < is_turn_known_.size(); ++k)
+    if (model_->unknown_turns[k].body == body) is_turn_known_[k] = false;
+}
+
+double ChainFilter::whole_tilt(const UnknownTurn& turn) const {
+  const Vec3 up = state_.world_R_base.row(2);
+  return up.cross(model_->bodies[turn.segment].parent_R_axis.col(2)).norm();
+}
+
+double ChainFilter::tilt_of(const UnknownTurn& turn) const {
+  const double least = std::max(least_tilt, tilt_sds * std::sqrt(p_.diagonal().head<3>().maxCoeff()));
+  return std::sqrt(std::max(0.0, square(whole_tilt(turn)) - square(least)));
+}
+
+bool ChainFilter::shows_turn(const UnknownTurn& turn) const {
+  const double turning = state_.joints[position_states * model_->layout.position[turn.segment] + 1],
+               tilting = state_.rate.cross(model_->bodies[turn.segment].parent_R_axis.col(2)).norm();
+  return tilt_of(turn) > 0.0 && std::max(std::abs(turning), tilting) > turn_shown;
+}
+
+/// A limb that is turned by an unknown angle sees tilt and tilting of the base from elsewhere. That is no noise, but
+/// stays as it is for long.
+void ChainFilter::widen_by_unknown_turns() {
+  by_turn_.setZero();
+  const bool is_moving = state_.base == BaseMode::moving;  // it is not level ground that seems to be tilted
+  for (std::size_t k = 0; k < is_turn_known_.size(); ++k) {
+    if (is_turn_known_[k]) continue;
+    const UnknownTurn& turn = model_->unknown_turns[k];
+    const double tilting = state_.rate.cross(model_->bodies[turn.segment].parent_R_axis.col(2)).norm(),
+                 tilt = is_moving ? whole_tilt(turn) : tilt_of(turn), more = square(tilt) - square(tilted_[k]);
+    if (more > 0.0) free_first_joint(turn.body, 2.0 * more), tilted_[k] = tilt;
+    for (const std::size_t s : turn.sensors) {
+      const Index row = sensor_rows * static_cast<Index>(s);
+      by_turn_.segment<3>(row).array() += turn_blocks * square(tilting);
+      by_turn_.segment<3>(row + 3).array() += turn_blocks * square(model_->gravity * tilt);
+    }
+  }
+}
+
 void ChainFilter::suppose(Index position, double value, double sd) {
-  const Index at = model_->layout.joint_state(position), estimated = model_->layout.first_geometry;
+  const Index at = model_->layout.joint_state(position), estimated = this->estimated();
   const double variance = p_(at, at), change = sd * sd - variance;
   VectorXd& share = column_;
   share = p_.col(at) / variance;
@@ -139,10 +239,16 @@ void ChainFilter::suppose_velocity(Index position, std::size_t sensor, const Vec
 }
 
 void ChainFilter::count_from_here(Index position) {
-  if (state_.base == BaseMode::moving) return place(position, state_.joints[position_states * position], 0.0);
+  const UnknownZero* unknown = model_->unknown_zero(position);
+  if (state_.base == BaseMode::moving && !unknown)
+    return place(position, state_.joints[position_states * position], 0.0);
   placed_ = state_.time;
-  forget(model_->layout.joint_state(position));
-  constant_faults_.by_fault().col(model_->layout.joint_state(position)).setZero();
+  const auto forget_estimated = [&](Index state) {
+    forget(state);
+    constant_faults_.by_fault().col(state).setZero();
+  };
+  forget_estimated(model_->layout.joint_state(position));
+  if (unknown) forget_estimated(unknown->state);
   if (const Index zero = zero_state(position); zero >= 0) forget(zero);
 }
 
@@ -224,7 +330,8 @@ void ChainFilter::form_sensor_rows(const BlockMeasurement& block, std::size_t s)
     const double shifted = square(time) * change_of_change_.segment<3>(first).squaredNorm();
     system_.set_instrument(
         first, is_used_[s] && count > 0, innovations_.value.segment<3>(first),
-        factor * block_variance(white, persistent, slow, settings.sample_period, block.length, count) + shifted);
+        factor * block_variance(white, persistent, slow, settings.sample_period, block.length, count) + shifted +
+            by_turn_[first]);
   };
   set(row, measured.rate_count, measured.rate_time, measured.rate, settings.white.rate, settings.persistent.rate,
       settings.slow.rate, levels_.of(s).rate);
@@ -238,6 +345,7 @@ void ChainFilter::form_rows(const BlockMeasurement& block) {
   system_.begin(evaluator_.result());
   error_.setZero();
   shown_ = ShownMeans::rates;
+  widen_by_unknown_turns();
   for (std::size_t s = 0; s < is_used_.size(); ++s) {
     form_sensor_rows(block, s);
     if (!is_used_[s] || block.sensors[s].rate_count == 0) shown_ = ShownMeans::accelerations;
@@ -303,20 +411,20 @@ double ChainFilter::distance_of_unused(const BlockMeasurement& block, std::size_
   unused_w_.setZero();
   add_product(p_.leftCols(fast), m.by_fast.block(row, 0, sensor_rows, fast), 1.0, unused_w_);
   if (geometry > 0)
-    add_product(p_.middleCols(layout.first_geometry, geometry), m.by_geometry.block(row, 0, sensor_rows, geometry), 1.0,
+    add_product(p_.middleCols(layout.first_unseen, geometry), m.by_geometry.block(row, 0, sensor_rows, geometry), 1.0,
                 unused_w_);
   // Its own errors are taken as uncorrelated with the rest: they are of no use while it is out of use.
   const Index own = layout.sensor_state(static_cast<Index>(s));
   SensorMatrix covariance = SensorMatrix::Zero();
   for (Index k = 0; k < fast; ++k) covariance += m.by_fast.col(k).segment<sensor_rows>(row) * unused_w_.row(k);
   for (Index k = 0; k < geometry; ++k)
-    covariance += m.by_geometry.col(k).segment<sensor_rows>(row) * unused_w_.row(layout.first_geometry + k);
+    covariance += m.by_geometry.col(k).segment<sensor_rows>(row) * unused_w_.row(layout.first_unseen + k);
   const double rate = block_variance(settings.white.rate, settings.persistent.rate, settings.slow.rate,
                                      settings.sample_period, block.length, measured.rate_count),
                force = block_variance(settings.white.force, settings.persistent.force, settings.slow.force,
                                       settings.sample_period, block.length, measured.force_count);
   for (Index i = 0; i < sensor_rows; ++i)
-    covariance(i, i) += levels_.common() * (i < 3 ? rate : force) + p_(own + i, own + i) +
+    covariance(i, i) += by_turn_[row + i] + levels_.common() * (i < 3 ? rate : force) + p_(own + i, own + i) +
                         p_.diagonal()
                             .segment<3>(own + SensorIndex::gyroscope_scale + 3 * i)
                             .dot((i < 3 ? m.angular_velocity[s] : m.force[s]).cwiseAbs2());
@@ -338,7 +446,7 @@ void ChainFilter::examine_unused(const BlockMeasurement& block) {
 }
 
 void ChainFilter::correct(double length) {
-  const Index estimated = model_->layout.first_geometry, n = model_->layout.size, geometry = n - estimated;
+  const Index estimated = this->estimated(), n = model_->layout.size, geometry = n - estimated;
   system_.divide();
   const auto gain = system_.gain();
   headings_.begin_update(*model_, state_, p_);
@@ -351,7 +459,7 @@ void ChainFilter::correct(double length) {
   if (geometry > 0)
     add_product(gain.bottomRows(geometry), gain.topRows(estimated), -1.0, p_.block(estimated, 0, geometry, estimated));
   headings_.end_update(gain, error_, state_.time, p_);
-  constant_faults_.update(system_, evaluator_.result(), change_, length);
+  constant_faults_.update(system_, evaluator_.result(), change_, length, estimated);
   bound();
   mirror();
 }
@@ -422,14 +530,15 @@ void ChainFilter::update(const BlockMeasurement& block) {
 /// With the filter's error s θ and the mounting J θ, which is now part of the state, the error is (s − J) θ. It is
 /// independent of the error that a filter without the turn would have (Friedland 1969).
 void ChainFilter::believe_turn(std::size_t sensor, const Vec3& mean, const Mat3& covariance, double excess) {
-  const Index estimated = model_->layout.first_geometry,
+  const Index estimated = this->estimated(),
               scales = model_->layout.sensor_state(static_cast<Index>(sensor)) + SensorIndex::gyroscope_scale;
   MatrixXd off = constant_faults_.by_fault().middleRows<3>(3 * static_cast<Index>(sensor)).transpose();
+  off.bottomRows(off.rows() - estimated).setZero();
   off.middleRows<18>(scales) -= scales_by_turn();
   error_.setZero();
-  error_.head(estimated) = -off * mean;
+  error_.head(off.rows()) = -off * mean;
   retract(*model_, error_, state_);
-  p_.topLeftCorner(estimated, estimated) += off * covariance * off.transpose();
+  p_.topLeftCorner(off.rows(), off.rows()) += off * covariance * off.transpose();
   constant_faults_.believe_turn(sensor, off, covariance, excess);
 }
 
@@ -449,7 +558,7 @@ double ChainFilter::shared_noise(const ScalarRow& row) const {
 }
 
 void ChainFilter::update(const ScalarRow& row) {
-  const Index estimated = model_->layout.first_geometry;
+  const Index estimated = this->estimated();
   const double variance = this->variance(row);
   VectorXd& w = column_;
   w.setZero();
@@ -460,7 +569,7 @@ void ChainFilter::update(const ScalarRow& row) {
   retract(*model_, error_, state_);
   for (Index j = 0; j < estimated; ++j)
     for (Index i = j; i < p_.rows(); ++i) p_(i, j) -= w[i] * w[j] / variance;
-  constant_faults_.update(row.at, row.factor, row.terms, w, variance);
+  constant_faults_.update(row.at, row.factor, row.terms, w, variance, estimated);
   mirror();
 }
 

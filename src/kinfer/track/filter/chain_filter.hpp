@@ -67,6 +67,31 @@ class ChainFilter {
   /// Moves a joint position (of a revolute or prismatic joint) and states how well it is known there.
   void place(Index position, double value, double sd);
 
+  /// Positions of unknown zeros are stated from where they are now, at what the user states of them, with its standard
+  /// deviation [rad]. Without a statement: at the value that they happen to have. Once.
+  void count_from_start(Index position, std::optional<double> stated, double sd);
+  bool counts_from_start() const { return counts_from_start_; }
+
+  /// A position of an unknown zero stood `turn` further on at the start, known to `sd` [rad]; what is stated of it
+  /// stays, but for `lost_sd`, by which it has turned unseen.
+  void turn_start(Index position, double turn, double sd, double lost_sd);
+
+  /// How the limb that begins with the body is turned on its segment is known from here on: by so much more, to `sd`
+  /// [rad]. The position of its first joint is as uncertain as the tilt of the base makes it.
+  void turn_limb(std::size_t body, double turn, double sd);
+  /// Nothing is known of that.
+  void forget_turn(std::size_t body);
+  bool knows_turn(std::size_t body) const;
+  /// [rad] by which the base is tilted against the axis of the segment, beyond what level ground may seem to be: the
+  /// limb depends on its turn.
+  double tilt_of(const UnknownTurn& turn) const;
+  /// Whether the tilt changes in the segment, which shows the turn of its limbs.
+  bool shows_turn(const UnknownTurn& turn) const;
+
+  /// Unseen points are estimated, or considered: as long as it is open where joints stand that they are multiplied
+  /// with.
+  void estimate_points(bool are_estimated) { estimates_points_ = are_estimated; }
+
   /// States a position otherwise, with another standard deviation [rad] or [m]; what is correlated with it goes along
   /// (Jeffrey's rule). Where a linearisation begins.
   void suppose(Index position, double value, double sd);
@@ -129,7 +154,11 @@ class ChainFilter {
   void let_biases_walk(double gap);
   void widen_bias_distance(double dt);
   double time_since_update() const;
+  Index estimated() const { return estimates_points_ ? model_->layout.first_geometry : model_->layout.first_point; }
   void follow_change();
+  double whole_tilt(const UnknownTurn& turn) const;
+  void widen_by_unknown_turns();
+  void free_first_joint(std::size_t body, double variance);
   void add_what_means_miss(double dt, const BlockMeasurement& block);
   void form_rows(const BlockMeasurement& block);
   void form_sensor_rows(const BlockMeasurement& block, std::size_t sensor);
@@ -162,7 +191,11 @@ class ChainFilter {
   VectorXd error_, column_;  // buffers of an update
   MatrixXd unused_w_;
   double placed_ = 0.0;
-  VectorXd bias_variance_;  // of each sensor's biases without the rows: gyroscope, accelerometer
+  bool counts_from_start_ = false, estimates_points_ = false;
+  std::vector<bool> is_turn_known_;  // of the model's unknown turns
+  std::vector<double> tilted_;       // [rad] of each of them: the tilt that the position of the first joint allows for
+  VectorXd by_turn_;                 // variances of the sensors' rows, by turns that are unknown
+  VectorXd bias_variance_;           // of each sensor's biases without the rows: gyroscope, accelerometer
 };
 
 }  // namespace kinfer::track

@@ -8,8 +8,21 @@ namespace {
 
 /// The body in this state: the rotation of a spherical joint is part of its parent_R_axis, so that its joint position
 /// is zero.
-void set_spherical(const InsBody& model, const Mat3& rotation, InsBody& body) {
-  if (model.motion == JointMotion::spherical) body.parent_R_axis = model.parent_R_axis * rotation;
+void set_parent_side(const ParentSide& side, const Mat3& spherical, InsBody& body) {
+  body.parent_R_axis = side.parent_R_axis;
+  body.point_in_parent = side.point_in_parent;
+  if (body.motion == JointMotion::spherical) body.parent_R_axis *= spherical;
+}
+
+/// Of a segment's ω, ω̇ and f, in the frame of what hangs on it, by its turn: that frame turns the other way, about a
+/// point of the axis.
+Eigen::Matrix<double, 9, 1> by_turn(const InsBody& segment, const InsState& at) {
+  const Vec3 axis = segment.child_R_axis.col(2), moved = -axis.cross(segment.point_in_child);
+  Eigen::Matrix<double, 9, 1> derivative;
+  derivative << -axis.cross(at.angular_velocity), -axis.cross(at.angular_acceleration),
+      -axis.cross(at.force) + at.angular_acceleration.cross(moved) +
+          at.angular_velocity.cross(at.angular_velocity.cross(moved));
+  return derivative;
 }
 
 JointKinematicState joint_state_of(const FilterModel& model, const ChainState& state, std::size_t b) {
@@ -40,7 +53,7 @@ Mat3 scaled(const Mat3& scale) {
 
 ChainEvaluator::ChainEvaluator(const FilterModel& model) : bodies_(model.bodies), states_(model.bodies.size()) {
   const FilterLayout& layout = model.layout;
-  const Index geometry = layout.size - layout.first_geometry;
+  const Index geometry = layout.size - layout.first_unseen;
   by_fast_.assign(bodies_.size(), MatrixXd::Zero(9, layout.fast));
   by_geometry_.assign(bodies_.size(), MatrixXd::Zero(9, geometry));
   result_.value = VectorXd::Zero(layout.rows());
@@ -50,7 +63,7 @@ ChainEvaluator::ChainEvaluator(const FilterModel& model) : bodies_(model.bodies)
   result_.force.assign(model.sensors.size(), Vec3::Zero());
   for (const SensorSettings& sensor : model.sensors) {
     result_.fast_end.push_back(layout.fast_end[static_cast<std::size_t>(sensor.body)]);
-    result_.geometry_end.push_back(layout.geometry_end[static_cast<std::size_t>(sensor.body)]);
+    result_.geometry_end.push_back(layout.unseen() + layout.geometry_end[static_cast<std::size_t>(sensor.body)]);
   }
   derivatives_.resize(bodies_.size());
   for (std::size_t b = 1; b < bodies_.size(); ++b)
@@ -59,7 +72,8 @@ ChainEvaluator::ChainEvaluator(const FilterModel& model) : bodies_(model.bodies)
 
 void ChainEvaluator::propagate_body(const FilterModel& model, const ChainState& state, std::size_t b) {
   const FilterLayout& layout = model.layout;
-  set_spherical(model.bodies[b], state.spherical[b], bodies_[b]);
+  const ParentSide side = parent_side(model, state, b);
+  set_parent_side(side, state.spherical[b], bodies_[b]);
   const auto parent = static_cast<std::size_t>(bodies_[b].parent);
   const JointKinematicState q = joint_state_of(model, state, b);
   PropagatedDerivative& derivative = derivatives_[b];
@@ -67,17 +81,25 @@ void ChainEvaluator::propagate_body(const FilterModel& model, const ChainState& 
   if (bodies_[b].motion == JointMotion::spherical) keep_angular_velocity(q, derivative.by_own);
   states_[b] = derivative.state;
   const Eigen::Matrix<double, 9, 9>& by_parent = derivative.by_parent;
-  const Index fast = layout.fast_end[parent], geometry = layout.geometry_end[parent];
+  const Index fast = layout.fast_end[parent], geometry = layout.unseen() + layout.geometry_end[parent];
   for (Index j = 0; j < fast; ++j)
     by_fast_[b].col(j).head<9>().noalias() = by_parent * by_fast_[parent].col(j).head<9>();
   for (Index j = 0; j < geometry; ++j)
     by_geometry_[b].col(j).head<9>().noalias() = by_parent * by_geometry_[parent].col(j).head<9>();
+  if (const UnknownTurn* turn = model.unknown_turn(b))
+    by_geometry_[b].col(turn->state - layout.first_unseen).head<9>() =
+        by_parent * by_turn(bodies_[parent], states_[parent]);
   const Index own = 3 * degrees_of_freedom(bodies_[b].motion);
   if (own > 0)
     for (Index j = 0; j < own; ++j)
       by_fast_[b].col(layout.joint_state(layout.position[b]) + j) = derivative.by_own.col(j);
   for (Index j = 0; j < bodies_[b].unknowns(); ++j)
-    by_geometry_[b].col(layout.geometry[b] + j) = derivative.by_own.col(own + j);
+    by_geometry_[b].col(layout.unseen() + layout.geometry[b] + j) = derivative.by_own.col(own + j);
+  if (!bodies_[b].free_point_in_parent) return;
+  auto by_point = by_geometry_[b].block<9, 3>(0, layout.unseen() + layout.geometry[b] + bodies_[b].turns());
+  by_point *= side.turn;
+  if (const UnknownPoint* point = model.unknown_point(b))
+    by_geometry_[b].block<9, 3>(0, point->state - layout.first_unseen) = by_point;
 }
 
 void ChainEvaluator::measure(const FilterModel& model, const ChainState& state, std::size_t s) {
@@ -114,7 +136,7 @@ VectorXd predicted_measurement(const FilterModel& model, const ChainState& state
   std::vector<InsState> states{state.base_state(model.gravity)};
   for (std::size_t b = 1; b < model.bodies.size(); ++b) {
     InsBody body = model.bodies[b];
-    set_spherical(model.bodies[b], state.spherical[b], body);
+    set_parent_side(parent_side(model, state, b), state.spherical[b], body);
     states.push_back(propagated(body, joint_state_of(model, state, b), states[static_cast<std::size_t>(body.parent)]));
   }
   VectorXd value(model.layout.rows());

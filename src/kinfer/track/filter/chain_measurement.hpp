@@ -16,7 +16,7 @@ namespace kinfer::track {
 struct ChainMeasurement {
   VectorXd value;                             ///< rows
   MatrixXd by_fast;                           ///< rows x fast states
-  MatrixXd by_geometry;                       ///< rows x geometry states
+  MatrixXd by_geometry;                       ///< rows x unseen states, then those of the geometry
   std::vector<Vec3> angular_velocity, force;  ///< true ones at each sensor: derivatives by its scale matrices
   std::vector<Index> fast_end, geometry_end;  ///< of each sensor: derivatives beyond these are zero
 };

@@ -185,10 +185,33 @@ ChainState initial_state(const FilterModel& model) {
   ChainState state;
   state.joints = VectorXd::Zero(position_states * layout.positions);
   state.liveliness = VectorXd::Zero(layout.positions);
+  state.start = VectorXd::Zero(layout.positions);
+  state.turned = VectorXd::Zero(static_cast<Index>(model.bodies.size()));
+  state.moved.assign(model.bodies.size(), Vec3::Zero());
   state.spherical.assign(model.bodies.size(), Mat3::Identity());
   for (const SensorSettings& s : model.sensors)
     state.sensors.push_back({s.gyroscope_bias, s.accelerometer_bias, s.gyroscope_scale, s.accelerometer_scale});
   return state;
+}
+
+ParentSide parent_side(const FilterModel& model, const ChainState& state, std::size_t b) {
+  const InsBody& body = model.bodies[b];
+  const auto parent = static_cast<std::size_t>(body.parent);
+  const Vec3 point = body.point_in_parent + state.moved[b];
+  if (!model.unknown_turn(b)) return {body.parent_R_axis, point};
+  const InsBody& segment = model.bodies[parent];
+  const Mat3 turn = exp_so3(state.turned[static_cast<Index>(b)] * segment.child_R_axis.col(2));
+  return {turn * body.parent_R_axis, segment.point_in_child + turn * (point - segment.point_in_child), turn};
+}
+
+FilterModel turned_model(const FilterModel& model, const ChainState& state) {
+  FilterModel turned = model;
+  for (std::size_t b = 1; b < model.bodies.size(); ++b) {
+    const ParentSide side = parent_side(model, state, b);
+    turned.bodies[b].parent_R_axis = side.parent_R_axis;
+    turned.bodies[b].point_in_parent = side.point_in_parent;
+  }
+  return turned;
 }
 
 void retract(const FilterModel& model, const VectorXd& error, ChainState& state) {
@@ -209,6 +232,9 @@ void retract(const FilterModel& model, const VectorXd& error, ChainState& state)
     }
     rotate_spherical(model, b, turn, state);
   }
+  for (const UnknownZero& zero : model.unknown_zeros) state.start[zero.position] += error[zero.state];
+  for (const UnknownPoint& point : model.unknown_points) state.moved[point.body] += error.segment<3>(point.state);
+  for (const UnknownTurn& turn : model.unknown_turns) state.turned[static_cast<Index>(turn.body)] += error[turn.state];
   for (std::size_t s = 0; s < state.sensors.size(); ++s) {
     const Index first = layout.sensor_state(static_cast<Index>(s));
     SensorErrors& e = state.sensors[s];

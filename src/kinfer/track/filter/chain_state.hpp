@@ -21,6 +21,9 @@ struct ChainState {
   Vec3 velocity = Vec3::Zero(), acceleration = Vec3::Zero();      ///< of its origin, in the world
   VectorXd joints;              ///< q, q̇, q̈ of each joint position; q of spherical joints is 0
   VectorXd liveliness;          ///< of each joint position: mean square of q̈ over `liveliness_time`
+  VectorXd start;               ///< [rad] of each joint position: subtracted from q where its zero is unknown
+  VectorXd turned;              ///< [rad] of each body: its joint, about the axis of its parent's
+  std::vector<Vec3> moved;      ///< [m] of each body: its joint on its parent, from where the model has it
   std::vector<Mat3> spherical;  ///< of each body: exp(φ); the identity unless spherical
   std::vector<SensorErrors> sensors;
 
@@ -30,6 +33,18 @@ struct ChainState {
 
 /// At rest at joint position 0 with the sensors' errors of the model.
 ChainState initial_state(const FilterModel& model);
+
+/// Where a body's joint sits in the frame of its parent, A and p, and by which both are turned against the model's:
+/// about the axis as the model has it, which is off by less than a milliradian.
+struct ParentSide {
+  Mat3 parent_R_axis;
+  Vec3 point_in_parent;
+  Mat3 turn = Mat3::Identity();
+};
+ParentSide parent_side(const FilterModel& model, const ChainState& state, std::size_t body);
+
+/// The model with the turns of segments that are in the state.
+FilterModel turned_model(const FilterModel& model, const ChainState& state);
 
 /// Adds an error to the estimated states; those of the geometry are left alone.
 void retract(const FilterModel& model, const VectorXd& error, ChainState& state);

@@ -21,9 +21,9 @@ TurnDerivative scales_by_turn() {
 }
 
 ConstantFaults::ConstantFaults(const FilterModel& model)
-    : estimated_(model.layout.first_geometry), sensors_(model.layout.sensors), stretch_length_(fault_stretch) {
+    : sensors_(model.layout.sensors), stretch_length_(fault_stretch) {
   const Index unknowns = 3 * sensors_ + 2;
-  s_ = MatrixXd::Zero(unknowns, estimated_);
+  s_ = MatrixXd::Zero(unknowns, model.layout.first_geometry);
   g_ = MatrixXd::Zero(unknowns, UpdateSystem::most_rows(model));
   information_ = block_information_ = MatrixXd::Zero(unknowns, unknowns);
   block_score_ = VectorXd::Zero(unknowns);
@@ -87,7 +87,7 @@ void ConstantFaults::sum_up(double length) {
 }
 
 void ConstantFaults::update(const UpdateSystem& system, const ChainMeasurement& predicted, const VectorXd& change,
-                            double length) {
+                            double length, Index estimated) {
   form_signatures(system, predicted, change);
   auto g = g_.leftCols(system.rows());
   system.whiten(g);
@@ -96,15 +96,15 @@ void ConstantFaults::update(const UpdateSystem& system, const ChainMeasurement& 
   sum_up(length);
   for (std::size_t s = 0; s < force_direction_.size(); ++s)
     force_direction_[s] += length * predicted.force[s].normalized();
-  add_product(g, system.gain().topRows(estimated_), 1.0, s_);
+  add_product(g, system.gain().topRows(estimated), 1.0, s_.leftCols(estimated));
 }
 
 void ConstantFaults::update(const std::array<Index, 6>& at, const std::array<double, 6>& factor, int terms,
-                            const VectorXd& w, double variance) {
+                            const VectorXd& w, double variance, Index estimated) {
   VectorXd& predicted = block_score_;
   predicted.setZero();
   for (std::size_t i = 0; i < static_cast<std::size_t>(terms); ++i) predicted += factor[i] * s_.col(at[i]);
-  for (Index j = 0; j < estimated_; ++j) s_.col(j) -= (w[j] / variance) * predicted;
+  for (Index j = 0; j < estimated; ++j) s_.col(j) -= (w[j] / variance) * predicted;
 }
 
 double ConstantFaults::force_scatter(std::size_t sensor) const {

@@ -42,12 +42,14 @@ class ConstantFaults {
 
   // ---- what the filter does to its state ----
   void predict(const FilterModel& model, const ChainState& before, double dt, ShownMeans means);
-  /// After the system has been divided, with the gains that correct the state; `change`: of the predicted rows [1/s].
-  void update(const UpdateSystem& system, const ChainMeasurement& predicted, const VectorXd& change, double length);
+  /// After the system has been divided, with the gains that correct the state; `change`: of the predicted rows
+  /// [1/s]; `estimated`: how many states are corrected.
+  void update(const UpdateSystem& system, const ChainMeasurement& predicted, const VectorXd& change, double length,
+              Index estimated);
 
   /// By one scalar measurement of the states `at` with these factors, of which the gain is `w` / `variance`.
   void update(const std::array<Index, 6>& at, const std::array<double, 6>& factor, int terms, const VectorXd& w,
-              double variance);
+              double variance, Index estimated);
 
   const MatrixXd& by_fault() const { return s_; }  ///< sᵀ: unknowns of all faults x estimated states
   MatrixXd& by_fault() { return s_; }
@@ -71,7 +73,7 @@ class ConstantFaults {
   void form_signatures(const UpdateSystem& system, const ChainMeasurement& predicted, const VectorXd& change);
   void sum_up(double length);
 
-  Index estimated_ = 0, sensors_ = 0;
+  Index sensors_ = 0;
   MatrixXd s_, g_, information_, block_information_;  // sᵀ, Gᵀ L⁻ᵀ, A, of one block
   VectorXd block_score_;
   std::vector<Vec3> force_direction_;  // sums over the time observed

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "kinfer/base/square.hpp"
 #include "kinfer/track/filter/thresholds.hpp"
@@ -103,7 +104,7 @@ void set_bias_changes(FilterModel& filter, const TrackingPrior& prior) {
 /// Root mean square over the directions of the axes on each sensor's segment, of its own joint and those of the next
 /// segments. A turn about the axis itself is a zero of the position, and turns no axis.
 void set_axis_sds(FilterModel& filter) {
-  const Index geometry = sensor_states * filter.layout.sensors;
+  const Index geometry = filter.layout.first_geometry - filter.layout.fast;
   std::vector<double> squares(filter.bodies.size(), 0.0);
   std::vector<int> counts(filter.bodies.size(), 0);
   for (std::size_t b = 1; b < filter.bodies.size(); ++b) {
@@ -123,6 +124,102 @@ void set_axis_sds(FilterModel& filter) {
     const auto b = static_cast<std::size_t>(sensor.body);
     if (counts[b] > 0) sensor.axis_sd = std::sqrt(squares[b] / counts[b]);
   }
+}
+
+/// A zero that is exact by definition leaves the others as uncertain as they are.
+void find_unknown_zeros(FilterModel& filter) {
+  const FilterLayout& layout = filter.layout;
+  for (std::size_t b = 1; b < filter.bodies.size(); ++b) {
+    const InsBody& body = filter.bodies[b];
+    const bool is_between_sensors =
+        body.sensor >= 0 && filter.bodies[static_cast<std::size_t>(body.parent)].sensor >= 0;
+    if (body.motion != JointMotion::revolute || !body.free_child_rotation[2] || !is_between_sensors) continue;
+    const Index slow = layout.first_geometry - layout.fast + layout.geometry[b] + body.turns() - 1;
+    if (!(filter.parameters(slow, slow) > square(unknown_zero_sd))) continue;
+    filter.parameters.row(slow).setZero();
+    filter.parameters.col(slow).setZero();
+    filter.unknown_zeros.push_back({.position = layout.position[b]});
+  }
+}
+
+/// The turn θ = wᵀx of a limb that its first axis shows, among the slow states.
+VectorXd turn_of_axis(const FilterModel& filter, std::size_t body) {
+  const FilterLayout& layout = filter.layout;
+  const InsBody& first = filter.bodies[body];
+  const Vec3 axis = filter.bodies[static_cast<std::size_t>(first.parent)].child_R_axis.col(2),
+             in_axes = first.parent_R_axis.transpose() * axis;
+  VectorXd w = VectorXd::Zero(filter.parameters.rows());
+  Index at = layout.first_geometry - layout.fast + layout.geometry[body];
+  for (std::size_t k = 0; k < 3; ++k)
+    if (first.free_parent_rotation[k]) w[at++] = in_axes[static_cast<Index>(k)];
+  return w / std::max(w.squaredNorm(), 1e-12);
+}
+
+/// Of limbs on segments on the base, whose tilt is the base's. The rest of the covariance is what it is if the turn is
+/// known.
+void find_unknown_turns(FilterModel& filter) {
+  for (std::size_t b = 1; b < filter.bodies.size(); ++b) {
+    const auto segment = static_cast<std::size_t>(filter.bodies[b].parent);
+    if (filter.bodies[segment].parent != 0 || !filter.unknown_zero(filter.layout.position[segment])) continue;
+    const VectorXd turn = turn_of_axis(filter, b), with_turn = filter.parameters * turn;
+    const double variance = turn.dot(with_turn);
+    if (!(variance > square(unknown_zero_sd))) continue;
+    filter.parameters -= with_turn * with_turn.transpose() / variance;
+    filter.unknown_turns.push_back({.body = b, .segment = segment});
+  }
+}
+
+/// Of a body's point in its parent, among the slow states.
+Index point_state(const FilterModel& filter, std::size_t body) {
+  const FilterLayout& layout = filter.layout;
+  return layout.first_geometry - layout.fast + layout.geometry[body] + filter.bodies[body].turns();
+}
+
+void find_unknown_points(FilterModel& filter) {
+  for (std::size_t b = 1; b < filter.bodies.size(); ++b)
+    if (filter.bodies[b].free_point_in_parent &&
+        filter.parameters.diagonal().segment<3>(point_state(filter, b)).maxCoeff() > square(unknown_point_sd))
+      filter.unknown_points.push_back({.body = b});
+}
+
+/// From a body outward.
+std::vector<std::size_t> sensors_beyond(const FilterModel& filter, std::size_t body) {
+  std::vector<std::size_t> sensors;
+  std::vector<bool> is_beyond(filter.bodies.size(), false);
+  for (std::size_t b = body; b < filter.bodies.size(); ++b) {
+    is_beyond[b] = b == body || is_beyond[static_cast<std::size_t>(filter.bodies[b].parent)];
+    if (is_beyond[b] && filter.bodies[b].sensor >= 0)
+      sensors.push_back(static_cast<std::size_t>(filter.bodies[b].sensor));
+  }
+  return sensors;
+}
+
+/// What the identification could not see becomes states: zeros and turns of which nothing is known before the first
+/// row, and points that are as uncertain as they were.
+void separate_unseen(FilterModel& filter) {
+  find_unknown_zeros(filter);
+  find_unknown_turns(filter);
+  find_unknown_points(filter);
+  const auto angles = static_cast<Index>(filter.unknown_zeros.size() + filter.unknown_turns.size()),
+             points = 3 * static_cast<Index>(filter.unknown_points.size());
+  const Index sensors = filter.layout.first_unseen - filter.layout.fast, before = filter.parameters.rows();
+  std::vector<Index> to;
+  for (Index i = 0; i < before; ++i) to.push_back(i < sensors ? i : i + angles + points);
+  for (std::size_t k = 0; k < filter.unknown_points.size(); ++k)
+    for (Index i = 0; i < 3; ++i)
+      to[static_cast<std::size_t>(point_state(filter, filter.unknown_points[k].body) + i)] =
+          sensors + angles + 3 * static_cast<Index>(k) + i;
+  MatrixXd parameters = MatrixXd::Zero(before + angles + points, before + angles + points);
+  parameters(to, to) = filter.parameters;
+  filter.parameters = std::move(parameters);
+  filter.layout = layout_of(filter.bodies, filter.layout.sensors, angles, points);
+  Index state = filter.layout.first_unseen;
+  for (UnknownZero& zero : filter.unknown_zeros) zero.state = state++;
+  for (UnknownTurn& turn : filter.unknown_turns) {
+    turn.state = state++;
+    turn.sensors = sensors_beyond(filter, turn.body);
+  }
+  for (UnknownPoint& point : filter.unknown_points) point.state = std::exchange(state, state + 3);
 }
 
 double excess(double level, double noise) {
@@ -219,6 +316,21 @@ bool FilterModel::is_loose(std::size_t body) const {
   return std::ranges::any_of(loose, [body](const LooseRevoluteJoint& joint) { return joint.body == body; });
 }
 
+const UnknownZero* FilterModel::unknown_zero(Index position) const {
+  const auto at = std::ranges::find(unknown_zeros, position, &UnknownZero::position);
+  return at == unknown_zeros.end() ? nullptr : &*at;
+}
+
+const UnknownTurn* FilterModel::unknown_turn(std::size_t body) const {
+  const auto at = std::ranges::find(unknown_turns, body, &UnknownTurn::body);
+  return at == unknown_turns.end() ? nullptr : &*at;
+}
+
+const UnknownPoint* FilterModel::unknown_point(std::size_t body) const {
+  const auto at = std::ranges::find(unknown_points, body, &UnknownPoint::body);
+  return at == unknown_points.end() ? nullptr : &*at;
+}
+
 FilterModel filter_model(const TrackingModel& model) {
   FilterModel filter;
   for (const TrackingBody& body : model.bodies) filter.bodies.push_back(filter_body(model, body));
@@ -239,6 +351,7 @@ FilterModel filter_model(const TrackingModel& model) {
   filter.bias = model.prior.bias;
   filter.parameters = slow_covariance(filter, model);
   set_bias_changes(filter, model.prior);
+  separate_unseen(filter);
   set_axis_sds(filter);
   return filter;
 }

@@ -42,6 +42,30 @@ struct RevoluteBetweenSensors {
   double speed = 0.0;  ///< [rad/s] where nothing shows how it moves
 };
 
+/// A revolute joint whose zero the identification could not see: an upright one that moved on level ground alone. Its
+/// positions are counted by the zero that the model happens to have, which is exact by this definition, and are stated
+/// from the start of tracking: that start is a state.
+struct UnknownZero {
+  Index position = 0, state = 0;  ///< of the filter
+};
+
+/// A limb on the first segment beyond an upright axis, which the identification saw turn on level ground alone: that
+/// segment's sensor may sit anywhere around the axis, against each limb on its own. Where the ground slopes that
+/// matters, and shows.
+struct UnknownTurn {
+  std::size_t body = 0;     ///< the first of the limb
+  std::size_t segment = 0;  ///< its parent
+  Index state = 0;
+  std::vector<std::size_t> sensors{};  ///< of the limb
+};
+
+/// Where a joint sits on its parent, of which the identification knows next to nothing: on a base that stood still, or
+/// along an upright axis. A base that rocks shows it. Three states.
+struct UnknownPoint {
+  std::size_t body = 0;
+  Index state = 0;  ///< the first
+};
+
 /// What lies beyond a joint of the tracking model, in the order of the bodies.
 struct JointBranch {
   std::vector<std::size_t> bodies{}, sensors{};
@@ -56,6 +80,9 @@ struct FilterModel {
   std::vector<LooseRevoluteJoint> loose;
   std::vector<PrismaticRange> prismatic;
   std::vector<RevoluteBetweenSensors> revolute;
+  std::vector<UnknownZero> unknown_zeros;
+  std::vector<UnknownTurn> unknown_turns;
+  std::vector<UnknownPoint> unknown_points;
   std::vector<JointBranch> joints;  ///< of each joint of the tracking model
   double gravity = standard_gravity;
   InsLevel bias{};                ///< standard deviation of a bias, as its grade has it
@@ -66,6 +93,12 @@ struct FilterModel {
 
   /// Whether a body's spherical joint stands for a loose revolute one.
   bool is_loose(std::size_t body) const;
+  /// Nothing where the zero of the position is known.
+  const UnknownZero* unknown_zero(Index position) const;
+  /// Nothing where it is known how the limb that begins with the body is turned on its segment.
+  const UnknownTurn* unknown_turn(std::size_t body) const;
+  /// Nothing where it is known where the body's joint sits on its parent.
+  const UnknownPoint* unknown_point(std::size_t body) const;
 };
 
 FilterModel filter_model(const TrackingModel& model);

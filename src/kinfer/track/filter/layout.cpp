@@ -5,7 +5,7 @@
 
 namespace kinfer::track {
 
-FilterLayout layout_of(const InsBodies& bodies, Index sensors) {
+FilterLayout layout_of(const InsBodies& bodies, Index sensors, Index unseen_angles, Index unseen_points) {
   FilterLayout layout{.sensors = sensors};
   Index geometry = 0;
   for (const InsBody& body : bodies) {
@@ -23,7 +23,9 @@ FilterLayout layout_of(const InsBodies& bodies, Index sensors) {
     layout.geometry_end.push_back(geometry);
   }
   layout.fast = layout.joint_state(layout.positions);
-  layout.first_geometry = layout.sensor_state(sensors);
+  layout.first_unseen = layout.sensor_state(sensors);
+  layout.first_point = layout.first_unseen + unseen_angles;
+  layout.first_geometry = layout.first_point + unseen_points;
   layout.size = layout.first_geometry + geometry;
   return layout;
 }

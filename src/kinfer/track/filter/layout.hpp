@@ -5,6 +5,8 @@
 //   base     attitude θ (R ← R exp(θ)), ω, α in the base sensor's frame; velocity, acceleration in the world
 //   joints   of each joint position q, q̇, q̈; of a spherical joint three rotations (Q ← Q exp(φ)) with their rates
 //   sensors  b_g, b_a, S_g, S_a of each, the matrices row by row
+//   unseen   what the identification could not see: starts of positions with unknown zeros, turns of segments,
+//            points on the base and on segments
 //   geometry the free unknowns of each body, in the order of InsBody
 #pragma once
 
@@ -26,11 +28,13 @@ struct SensorIndex {
 };
 
 struct FilterLayout {
-  Index positions = 0;                ///< joint positions of the filter: three for a spherical joint
-  Index sensors = 0;                  ///< their number
-  Index fast = 0;                     ///< states of base and joints
-  Index first_geometry = 0;           ///< states that are estimated end here
-  Index size = 0;                     ///< all
+  Index positions = 0;       ///< joint positions of the filter: three for a spherical joint
+  Index sensors = 0;         ///< their number
+  Index fast = 0;            ///< states of base and joints
+  Index first_unseen = 0;    ///< states of sensors end here
+  Index first_point = 0;     ///< of those unseen: the points, which are considered until a base that moves shows them
+  Index first_geometry = 0;  ///< states that are estimated end here
+  Index size = 0;            ///< all
   std::vector<Index> position{};      ///< of each body: its first joint position; −1: none
   std::vector<Index> geometry{};      ///< of each body: its first geometry state, relative to first_geometry
   std::vector<Index> fast_end{};      ///< of each body: its measurements depend on fast states before this
@@ -38,9 +42,10 @@ struct FilterLayout {
 
   Index joint_state(Index at) const { return base_states + position_states * at; }
   Index sensor_state(Index sensor) const { return fast + sensor_states * sensor; }
+  Index unseen() const { return first_geometry - first_unseen; }
   Index rows() const { return sensor_rows * sensors; }
 };
 
-FilterLayout layout_of(const InsBodies& bodies, Index sensors);
+FilterLayout layout_of(const InsBodies& bodies, Index sensors, Index unseen_angles = 0, Index unseen_points = 0);
 
 }  // namespace kinfer::track

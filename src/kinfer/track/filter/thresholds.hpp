@@ -76,6 +76,16 @@ inline constexpr double max_inflation = 1e4;
 inline constexpr double joint_change_gain = 0.1;  ///< in an update, of how far a doubted joint's change is followed
 inline constexpr int change_rows = 6;             ///< of a joint's change: angular velocity and specific force
 
+/// [rad] A zero known no better than this, which is as much as the start asks of gravity, is no zero. Excavators and
+/// arms identified on level ground have 2.7 and more, those identified on a slope of 3 degrees 0.02.
+inline constexpr double unknown_zero_sd = 0.35;
+/// [m] A point known no better than this is estimated: its products with accelerations are beyond linearisation. Points
+/// that an identification on a still base saw are known to millimetres, the others to 1 m and more.
+inline constexpr double unknown_point_sd = 0.2;
+/// [rad] The base counts as tilted beyond this, and beyond so many standard deviations.
+inline constexpr double least_tilt = 3.5e-3, tilt_sds = 3.0;
+inline constexpr double turn_shown = 0.03;      ///< [rad/s] at which the tilt's direction changes in a segment
+inline constexpr double turn_blocks = 500.0;    ///< in which what an unknown turn makes of a tilt stays as it is
 inline constexpr double max_position_sd = 1.8;  ///< [rad] an angle that could be any; [m] likewise
 inline constexpr double max_motion_sd = 30.0;   ///< per second, per second²
 

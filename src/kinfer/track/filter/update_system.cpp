@@ -78,6 +78,10 @@ void UpdateSystem::subtract_predicted(const ChainMeasurement& m, const MatrixXd&
   for (std::size_t s = 0; s < m.fast_end.size(); ++s) {
     const Index row = sensor_rows * static_cast<Index>(s), fast = m.fast_end[s];
     add_product(errors.leftCols(fast), h_.block(row, 0, sensor_rows, fast), -1.0, from.middleCols(row, sensor_rows));
+    for (Index half = 0; half < 2; ++half)
+      if (const Index unseen = layout_.unseen(); unseen > 0 && is_measured_[2 * s + static_cast<std::size_t>(half)])
+        add_product(errors.middleCols(layout_.first_unseen, unseen), m.by_geometry.block(row + 3 * half, 0, 3, unseen),
+                    -1.0, from.middleCols(row + 3 * half, 3));
     for_each_own_state(m, s, [&](Index at, Index state, double factor) { from.col(at) -= factor * errors.col(state); });
   }
   for (Index row = layout_.rows(); row < rows_; ++row)
@@ -94,8 +98,8 @@ void UpdateSystem::multiply_covariance(const ChainMeasurement& m, const MatrixXd
     auto w = w_.middleCols(row, sensor_rows);
     add_product(p.leftCols(fast), h_.block(row, 0, sensor_rows, fast), 1.0, w);
     if (geometry > 0)
-      add_product(p.middleCols(layout_.first_geometry, geometry), m.by_geometry.block(row, 0, sensor_rows, geometry),
-                  1.0, w);
+      add_product(p.middleCols(layout_.first_unseen, geometry), m.by_geometry.block(row, 0, sensor_rows, geometry), 1.0,
+                  w);
     for_each_own_state(m, s, [&](Index at, Index state, double factor) {
       double* to = w_.col(at).data();
       const double* from = p.col(state).data();
@@ -117,7 +121,7 @@ void UpdateSystem::multiply_derivatives(const ChainMeasurement& m) {
       auto to = s_.col(j).segment<sensor_rows>(row);
       for (Index k = 0; k < fast; ++k) to += w_(k, j) * h_.col(k).segment<sensor_rows>(row);
       for (Index k = 0; k < geometry; ++k)
-        to += w_(layout_.first_geometry + k, j) * m.by_geometry.col(k).segment<sensor_rows>(row);
+        to += w_(layout_.first_unseen + k, j) * m.by_geometry.col(k).segment<sensor_rows>(row);
     }
     for_each_own_state(m, s, [&](Index at, Index state, double factor) {
       for (Index j = 0; j <= at; ++j) s_(at, j) += factor * w_(state, j);

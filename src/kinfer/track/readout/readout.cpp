@@ -21,6 +21,14 @@ double sd_at(const MatrixXd& covariance, Index at) {
   return std::sqrt(std::max(0.0, covariance(at, at)));
 }
 
+/// Of a single position, from the start if its zero is unknown.
+double variance_since_start(const FilterModel& model, Index position, const MatrixXd& covariance) {
+  const Index row = model.layout.joint_state(position);
+  const UnknownZero* zero = model.unknown_zero(position);
+  if (!zero) return covariance(row, row);
+  return covariance(row, row) + covariance(zero->state, zero->state) - 2.0 * covariance(row, zero->state);
+}
+
 Mat3 spherical_covariance(const FilterLayout& layout, Index first, Index derivative, const MatrixXd& covariance) {
   Mat3 p;
   for (Index i = 0; i < 3; ++i)
@@ -60,7 +68,7 @@ Mat3 parent_R_child(const FilterModel& model, std::size_t b, const ChainState& s
   const InsBody& body = model.bodies[b];
   Mat3 turn = state.spherical[b];
   if (body.motion == JointMotion::revolute) turn = rot_z(state.joints[position_states * model.layout.position[b]]);
-  return body.parent_R_axis * turn * body.child_R_axis.transpose();
+  return parent_side(model, state, b).parent_R_axis * turn * body.child_R_axis.transpose();
 }
 
 /// A universal joint's two bodies follow each other.
@@ -113,9 +121,9 @@ void read_out(const TrackingModel& tracking, const FilterModel& model, const Cha
       read_loose_joint(model, b, state, covariance, at, to);
     } else {
       const Index first = model.layout.position[b], row = model.layout.joint_state(first);
-      to.q[at] = state.joints[position_states * first];
+      to.q[at] = state.joints[position_states * first] - state.start[first];
       to.qd[at] = state.joints[position_states * first + 1];
-      to.sd_q[at] = sd_at(covariance, row);
+      to.sd_q[at] = std::sqrt(std::max(0.0, variance_since_start(model, first, covariance)));
       to.sd_qd[at] = sd_at(covariance, row + 1);
     }
   }

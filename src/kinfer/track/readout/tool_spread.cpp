@@ -7,7 +7,10 @@
 namespace kinfer::track {
 
 ToolSpread::ToolSpread(const FilterModel& model, const TrackingTool& tool)
-    : carried_(tool), leads_to_tool_(model.bodies.size(), false), bodies_(model.bodies.size()) {
+    : carried_(tool),
+      leads_to_tool_(model.bodies.size(), false),
+      bodies_(model.bodies.size()),
+      parent_sides_(model.bodies.size()) {
   for (int b = tool.body; b > 0; b = model.bodies[static_cast<std::size_t>(b)].parent)
     leads_to_tool_[static_cast<std::size_t>(b)] = true;
   index_.reserve(static_cast<std::size_t>(model.layout.size));
@@ -17,12 +20,13 @@ ToolSpread::ToolSpread(const FilterModel& model, const TrackingTool& tool)
 void ToolSpread::set_pose(const FilterModel& model, const ChainState& state, std::size_t b) {
   const InsBody& body = model.bodies[b];
   const Index at = position_states * model.layout.position[b];
-  Pose step{body.parent_R_axis * body.child_R_axis.transpose(), body.point_in_parent};
+  const auto& [parent_R_axis, point_in_parent, turned] = parent_sides_[b] = parent_side(model, state, b);
+  Pose step{parent_R_axis * body.child_R_axis.transpose(), point_in_parent};
   if (body.motion == JointMotion::revolute)
-    step.rotation = body.parent_R_axis * rot_z(state.joints[at]) * body.child_R_axis.transpose();
+    step.rotation = parent_R_axis * rot_z(state.joints[at]) * body.child_R_axis.transpose();
   if (body.motion == JointMotion::spherical)
-    step.rotation = body.parent_R_axis * state.spherical[b] * body.child_R_axis.transpose();
-  if (body.motion == JointMotion::prismatic) step.position += state.joints[at] * body.parent_R_axis.col(2);
+    step.rotation = parent_R_axis * state.spherical[b] * body.child_R_axis.transpose();
+  if (body.motion == JointMotion::prismatic) step.position += state.joints[at] * parent_R_axis.col(2);
   step.position -= step.rotation * body.point_in_child;
   bodies_[b] = bodies_[static_cast<std::size_t>(body.parent)] * step;
 }
@@ -36,27 +40,36 @@ void ToolSpread::add_column(Index state, const Vec3& shift, const Vec3& turn) {
 /// they turn its direction, those of the child's about where it is.
 void ToolSpread::add_body(const FilterModel& model, std::size_t b) {
   const InsBody& body = model.bodies[b];
+  const ParentSide& side = parent_sides_[b];
   const Pose& before = bodies_[static_cast<std::size_t>(body.parent)];
   const Mat3 &parent = before.rotation, &child = bodies_[b].rotation;
   const Vec3 arm = tool_.position - bodies_[b] * body.point_in_child,
-             parent_arm = tool_.position - before * body.point_in_parent;
+             parent_arm = tool_.position - before * side.point_in_parent;
   const auto turn = [&](Index state, const Vec3& axis) { add_column(state, axis.cross(arm), axis); };
   const Mat3 axes = child * body.child_R_axis;
   if (body.motion == JointMotion::revolute) turn(model.layout.joint_state(model.layout.position[b]), axes.col(2));
   if (body.motion == JointMotion::prismatic)
-    add_column(model.layout.joint_state(model.layout.position[b]), parent * body.parent_R_axis.col(2), Vec3::Zero());
+    add_column(model.layout.joint_state(model.layout.position[b]), parent * side.parent_R_axis.col(2), Vec3::Zero());
   if (body.motion == JointMotion::spherical)
     for (Index i = 0; i < 3; ++i) turn(model.layout.joint_state(model.layout.position[b] + i), axes.col(i));
+  const Mat3 point_axes = parent * side.turn;
+  if (const UnknownPoint* point = model.unknown_point(b))
+    for (Index i = 0; i < 3; ++i) add_column(point->state + i, point_axes.col(i), Vec3::Zero());
+  if (const UnknownTurn* turned = model.unknown_turn(b)) {
+    const InsBody& segment = model.bodies[turned->segment];
+    const Vec3 axis = parent * segment.child_R_axis.col(2);
+    add_column(turned->state, axis.cross(tool_.position - before * segment.point_in_child), axis);
+  }
   Index state = model.layout.first_geometry + model.layout.geometry[b];
   for (Index i = 0; i < 3; ++i)
     if (body.free_parent_rotation[static_cast<std::size_t>(i)]) {
-      const Vec3 axis = parent * body.parent_R_axis.col(i);
+      const Vec3 axis = parent * side.parent_R_axis.col(i);
       add_column(state++, axis.cross(parent_arm), axis);
     }
   for (Index i = 0; i < 3; ++i)
     if (body.free_child_rotation[static_cast<std::size_t>(i)]) turn(state++, -axes.col(i));
   if (body.free_point_in_parent)
-    for (Index i = 0; i < 3; ++i) add_column(state++, parent.col(i), Vec3::Zero());
+    for (Index i = 0; i < 3; ++i) add_column(state++, point_axes.col(i), Vec3::Zero());
   if (body.free_point_in_child)
     for (Index i = 0; i < 3; ++i) add_column(state++, -child.col(i), Vec3::Zero());
 }

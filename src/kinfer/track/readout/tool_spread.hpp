@@ -34,6 +34,7 @@ class ToolSpread {
   TrackingTool carried_;
   std::vector<bool> leads_to_tool_;  // of each body
   std::vector<Pose> bodies_;
+  std::vector<ParentSide> parent_sides_;  // of each body's joint
   Pose tool_;
   Vec3 position_sd_ = Vec3::Zero(), rotation_sd_ = Vec3::Zero();
   std::vector<Index> index_;  // of the states with a derivative

@@ -117,7 +117,13 @@ void smooth(const TrackingModel& model, const TrackOptions& options, std::span<c
     notify_pass(observer, "forward pass", i + 1, rows.size());
     forward.add(rows[i]);
     TrackState state = forward.tracker().state();
+    const TrackState before = state;
     combine(model, forward.state(), backward[i], state);
+    // Both passes may have found what hangs on a segment at different places: the tool is that of the forward pass.
+    if (!forward.tracker().filter().model().unknown_turns.empty() && before.started) {
+      state.base_T_tool = before.base_T_tool;
+      state.sd_tool_position = before.sd_tool_position, state.sd_tool_rotation = before.sd_tool_rotation;
+    }
     add(state);
   }
 }

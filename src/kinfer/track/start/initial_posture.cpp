@@ -78,7 +78,7 @@ double sd_of_line(ConstMatrixRef covariance) {
 
 AxisSd axis_sd(const FilterModel& model, std::size_t b) {
   const InsBody& body = model.bodies[b];
-  Index at = sensor_states * model.layout.sensors + model.layout.geometry[b];
+  Index at = model.layout.first_geometry - model.layout.fast + model.layout.geometry[b];
   const auto next = [&](const std::array<bool, 3>& is_free) {
     double variance = 0.0;
     for (std::size_t i = 0; i < 3; ++i)

@@ -18,6 +18,7 @@ namespace kinfer::track {
 struct PositionGuess {
   double value = 0.0, sd = 0.0;        ///< [rad] or [m]
   bool is_given = false;               ///< by the user
+  std::optional<double> stated{};      ///< [rad] by the user, where the zero is unknown: nothing is known of its value
   std::optional<LastPosition> last{};  ///< before a gap: it goes on from there where gravity does not show it better
 };
 

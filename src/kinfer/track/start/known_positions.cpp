@@ -34,6 +34,7 @@ void KnownPositions::begin(const FilterModel& model, const InitialPosture& postu
                    since_before = std::max(positions_[i].start_sd, lost);
       positions_[i] = {.is_known = start.is_known,
                        .is_open = !start.is_known && has_grid(model, b) && is_shown,
+                       .is_relative = model.unknown_zero(static_cast<Index>(i)) != nullptr,
                        .start_sd = has_zero        ? 0.0
                                    : start.lost_sd ? since_before
                                                    : max_position_sd,
@@ -51,7 +52,9 @@ void KnownPositions::let_base_move(const FilterModel& model) {
 }
 
 void KnownPositions::decide(const FilterModel& model, std::size_t body) {
-  for_each_position(model, body, [&](std::size_t i) { positions_[i] = {.is_known = true}; });
+  for_each_position(model, body, [&](std::size_t i) {
+    positions_[i] = {.is_known = true, .is_relative = positions_[i].is_relative};
+  });
 }
 
 bool KnownPositions::has_open_heading(const FilterModel& model, std::size_t body) const {

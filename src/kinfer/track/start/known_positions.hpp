@@ -12,13 +12,14 @@ namespace kinfer::track {
 /// Of a position that is not known, the standard deviations [rad] hold what its zero may be off beyond the filter's.
 struct KnownPosition {
   bool is_known = false;
-  bool is_open = false;   ///< motion will show it, and has not yet
-  double start_sd = 0.0;  ///< of where it counts from
-  double lost_sd = 0.0;   ///< of what it has turned unseen since then: in a gap, or without its sensor
+  bool is_open = false;      ///< motion will show it, and has not yet
+  bool is_relative = false;  ///< counts from the start for good: its zero is unknown
+  double start_sd = 0.0;     ///< of where it counts from
+  double lost_sd = 0.0;      ///< of what it has turned unseen since then: in a gap, or without its sensor
 
   /// What is missing in the filter's standard deviation. A position that counts from the start has none but for what
   /// was lost; one that is open may be anywhere.
-  double missing_sd() const { return is_known ? 0.0 : is_open ? start_sd : lost_sd; }
+  double missing_sd() const { return is_known ? 0.0 : is_open && !is_relative ? start_sd : lost_sd; }
 };
 
 class KnownPositions {

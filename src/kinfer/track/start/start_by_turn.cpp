@@ -30,7 +30,7 @@ VectorXd difference(const FilterModel& model, const ChainState& from, const Chai
 void follow_turns(const InitialPosture& posture, const BlockMeasurement& block, const std::vector<PositionGuess>& guess,
                   ChainFilter& filter) {
   constexpr double step = 1e-4;  // [rad]
-  const FilterModel& model = filter.model();
+  const FilterModel model = turned_model(filter.model(), filter.state());
   const ChainState plain = initial_posture(model, block, guess, posture.state.base).state;
   MatrixXd& by_fault = filter.constant_faults().by_fault();
   for (std::size_t s = 0; s < model.sensors.size(); ++s)

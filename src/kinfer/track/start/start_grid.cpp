@@ -12,22 +12,41 @@
 
 namespace kinfer::track {
 
-StartGrid::StartGrid(const ChainFilter& filter, std::size_t body)
+StartGrid::StartGrid(const ChainFilter& filter, std::size_t body, bool is_of_limb)
     : body_(body),
-      motion_(filter.model().bodies[body].motion),
+      is_of_limb_(is_of_limb),
+      motion_(is_of_limb ? JointMotion::revolute : filter.model().bodies[body].motion),
       position_(filter.model().layout.position[body]),
+      state_(is_of_limb ? filter.model().unknown_turn(body)->state : filter.model().layout.joint_state(position_)),
       untold_since_(filter.state().time) {}
 
-StartGrid StartGrid::around(const ChainFilter& filter, std::size_t body, double sd) {
+StartGrid StartGrid::around(const ChainFilter& filter, std::size_t body, const KnownPosition& known) {
   StartGrid grid(filter, body);
   const double q = filter.state().joints[position_states * grid.position_],
                step = 2.0 * std::numbers::pi / start_places;
+  const bool was_known = known.start_sd < max_position_sd;
   for (int k = 0; k < start_places; ++k) {
     const double turn = wrap_to_pi(k * step);
     grid.candidates_.push_back({.filter = filter});
     Candidate& candidate = grid.candidates_.back();
-    candidate.filter.place(grid.position_, q + turn, 0.5 * step);
-    if (sd < max_position_sd) candidate.log_weight = -0.5 * square(turn / std::max(sd, 0.5 * step));
+    if (known.is_relative && !was_known)
+      candidate.filter.turn_start(grid.position_, turn, 0.5 * step, known.lost_sd);
+    else
+      candidate.filter.place(grid.position_, q + turn, 0.5 * step);
+    if (was_known) candidate.log_weight = -0.5 * square(turn / std::max(known.start_sd, 0.5 * step));
+  }
+  grid.candidates_.front().is_stated = true;
+  grid.number();
+  grid.weigh();
+  return grid;
+}
+
+StartGrid StartGrid::of_limb(const ChainFilter& filter, std::size_t body) {
+  StartGrid grid(filter, body, true);
+  const double step = 2.0 * std::numbers::pi / start_places;
+  for (int k = 0; k < start_places; ++k) {
+    grid.candidates_.push_back({.filter = filter});
+    grid.candidates_.back().filter.turn_limb(body, wrap_to_pi(k * step), 0.5 * step);
   }
   grid.candidates_.front().is_stated = true;
   grid.number();
@@ -104,8 +123,7 @@ double StartGrid::entropy() const {
 double StartGrid::variance_about(const Candidate& candidate) const {
   double variance = 0.0;
   for (const Candidate& c : candidates_) {
-    const Index own = c.filter.model().layout.joint_state(position_);
-    variance += c.probability * (c.filter.covariance()(own, own) + square(distance(c.filter, candidate.filter)));
+    variance += c.probability * (c.filter.covariance()(state_, state_) + square(distance(c.filter, candidate.filter)));
   }
   return variance;
 }
@@ -127,8 +145,13 @@ const ChainFilter& StartGrid::stated() const {
   return std::ranges::find_if(candidates_, &Candidate::is_stated)->filter;
 }
 
+double StartGrid::value(const ChainFilter& filter) const {
+  return is_of_limb_ ? filter.state().turned[static_cast<Index>(body_)]
+                     : filter.state().joints[position_states * position_];
+}
+
 double StartGrid::distance(const ChainFilter& a, const ChainFilter& b) const {
-  const double d = a.state().joints[position_states * position_] - b.state().joints[position_states * position_];
+  const double d = value(a) - value(b);
   return std::abs(motion_ == JointMotion::revolute ? wrap_to_pi(d) : d);
 }
 

@@ -4,7 +4,7 @@
 // wrong, because its linearisation holds for small angles only.
 #pragma once
 
-#include "kinfer/track/start/initial_posture.hpp"
+#include "kinfer/track/start/known_positions.hpp"
 
 namespace kinfer::track {
 
@@ -19,8 +19,11 @@ class StartGrid {
     std::size_t place = 0;  ///< on the grid as it began
   };
 
-  /// From `filter`, with the angle of the body's joint all around the circle. `sd` [rad]: of where it is in `filter`.
-  static StartGrid around(const ChainFilter& filter, std::size_t body, double sd);
+  /// From `filter`, with the angle of the body's joint all around the circle. Of what is known of it: standard
+  /// deviation of where it is in `filter`, and of that what it has turned unseen since the start.
+  static StartGrid around(const ChainFilter& filter, std::size_t body, const KnownPosition& known);
+  /// From `filter`, with the limb that begins with the body anywhere around the axis of its segment.
+  static StartGrid of_limb(const ChainFilter& filter, std::size_t body);
   /// From `filter`, with the displacement of the body's joint within `guess` and its standard deviation on both sides.
   static StartGrid along(const ChainFilter& filter, std::size_t body, const PositionGuess& guess);
 
@@ -42,9 +45,14 @@ class StartGrid {
   std::span<Candidate> candidates() { return candidates_; }
   std::size_t body() const { return body_; }
   JointMotion motion() const { return motion_; }
+  /// What is sought is how a limb is turned on its segment.
+  bool is_of_limb() const { return is_of_limb_; }
+  /// Of the joint that is sought; −1: a limb's turn is.
+  Index position() const { return is_of_limb_ ? -1 : position_; }
 
  private:
-  StartGrid(const ChainFilter& filter, std::size_t body);
+  StartGrid(const ChainFilter& filter, std::size_t body, bool is_of_limb = false);
+  double value(const ChainFilter& filter) const;
   double distance(const ChainFilter& a, const ChainFilter& b) const;
   double variance_about(const Candidate& candidate) const;
   void number();
@@ -54,8 +62,10 @@ class StartGrid {
   void choose();
 
   std::size_t body_;
+  bool is_of_limb_;
   JointMotion motion_;
   Index position_;  // of the filter, the joint's first
+  Index state_;     // of what is sought
   int updates_ = 0;
   double untold_since_ = 0.0;  // [s]
   std::vector<Candidate> candidates_;
