@@ -231,12 +231,13 @@ void Tracker::list_wrong_starts(const InitialPosture& posture) {
 
 void Tracker::resolve_start(const BlockMeasurement& block) {
   const std::size_t body = grid_->body();
-  grid_->update(
-      block, grid_->is_of_limb() ? filter_.shows_turn(*model_->unknown_turn(body)) : motion_.tells_of(*model_, body));
+  grid_->update(block, grid_->is_of_limb() ? filter_.shows_turn(*model_->unknown_turn(body))
+                                           : motion_.moves_parent(*model_, body));
   filter_ = grid_->stated();
   if (!grid_->is_decided()) {
     const double patience = grid_->entropy() > open_entropy ? untold_patience : undecided_patience;
-    if (block.time - grid_->untold_since() > patience) give_up_grid(block.time);
+    const bool may_count = grid_->motion() != JointMotion::prismatic;
+    if (may_count && block.time - grid_->untold_since() > patience) give_up_grid(block.time);
     return;
   }
   if (!grid_->is_of_limb()) positions_.decide(*model_, body);

@@ -43,7 +43,10 @@ void MotionWatch::add(const BlockMeasurement& block, const ChainFilter& filter) 
 }
 
 bool MotionWatch::tells_of(const FilterModel& model, std::size_t body, double share) const {
-  if (model.bodies[body].motion == JointMotion::prismatic) return true;
+  return model.bodies[body].motion == JointMotion::prismatic || moves_parent(model, body, share);
+}
+
+bool MotionWatch::moves_parent(const FilterModel& model, std::size_t body, double share) const {
   auto parent = static_cast<std::size_t>(model.bodies[body].parent);
   while (parent > 0 && model.bodies[parent].sensor < 0) parent = static_cast<std::size_t>(model.bodies[parent].parent);
   const int sensor = model.bodies[parent].sensor;

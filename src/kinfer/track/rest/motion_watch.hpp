@@ -17,6 +17,8 @@ class MotionWatch {
   /// Whether the parent of the body's joint moves, so that it tells where the joint stands; by `share` of the motion
   /// that is certain. A prismatic joint is told by the rates that its own axes have.
   bool tells_of(const FilterModel& model, std::size_t body, double share = 1.0) const;
+  /// What a displacement is told by, too: its joint begins anywhere, but at rest rows say nothing of where.
+  bool moves_parent(const FilterModel& model, std::size_t body, double share = 1.0) const;
 
  private:
   struct Sensor {
