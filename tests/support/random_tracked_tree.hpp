@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kinfer/evidence/tracking/tracking_model.hpp"
-#include "kinfer/track/filter/chain_state.hpp"
+#include "kinfer/track/model/chain_state.hpp"
 #include "support/random.hpp"
 
 namespace kinfer::test {

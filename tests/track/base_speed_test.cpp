@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "kinfer/base/rng.hpp"
-#include "kinfer/track/filter/thresholds.hpp"
+#include "kinfer/track/model/thresholds.hpp"
 
 namespace kinfer::track {
 namespace {

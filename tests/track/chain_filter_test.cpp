@@ -11,7 +11,7 @@
 #include "kinfer/linalg/products.hpp"
 #include "kinfer/track/faults/fit_monitor.hpp"
 #include "kinfer/track/faults/replay.hpp"
-#include "kinfer/track/filter/thresholds.hpp"
+#include "kinfer/track/model/thresholds.hpp"
 #include "support/random_tracked_tree.hpp"
 
 namespace kinfer::track {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Motion of a tracked chain between two updates: the mean against its equations, the covariance against the mean.
-#include "kinfer/track/filter/chain_state.hpp"
+#include "kinfer/track/model/chain_state.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "kinfer/base/square.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/linalg/products.hpp"
-#include "kinfer/track/filter/thresholds.hpp"
+#include "kinfer/track/model/thresholds.hpp"
 #include "support/differences.hpp"
 #include "support/random_tracked_tree.hpp"
 

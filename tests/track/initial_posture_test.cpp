@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "kinfer/geometry/random.hpp"
-#include "kinfer/track/filter/thresholds.hpp"
+#include "kinfer/track/model/thresholds.hpp"
 #include "kinfer/track/start/thresholds.hpp"
 
 namespace kinfer::track {

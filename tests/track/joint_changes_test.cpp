@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "kinfer/track/filter/filter_model.hpp"
+#include "kinfer/track/model/filter_model.hpp"
 #include "support/random_tracked_tree.hpp"
 
 namespace kinfer::track {

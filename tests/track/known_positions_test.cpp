@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "kinfer/track/filter/thresholds.hpp"
+#include "kinfer/track/model/thresholds.hpp"
 
 namespace kinfer::track {
 namespace {

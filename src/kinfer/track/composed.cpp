@@ -9,7 +9,7 @@
 #include "kinfer/base/square.hpp"
 #include "kinfer/evidence/tracking/body_poses.hpp"
 #include "kinfer/geometry/cardan_angles.hpp"
-#include "kinfer/track/filter/thresholds.hpp"
+#include "kinfer/track/model/thresholds.hpp"
 
 namespace kinfer::track {
 namespace {

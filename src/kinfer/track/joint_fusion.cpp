@@ -7,7 +7,7 @@
 #include "kinfer/base/angle.hpp"
 #include "kinfer/base/square.hpp"
 #include "kinfer/geometry/cardan_angles.hpp"
-#include "kinfer/track/filter/thresholds.hpp"
+#include "kinfer/track/model/thresholds.hpp"
 #include "kinfer/track/readout/readout.hpp"
 
 namespace kinfer::track {

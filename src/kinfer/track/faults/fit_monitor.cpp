@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "kinfer/track/faults/thresholds.hpp"
-#include "kinfer/track/filter/thresholds.hpp"
+#include "kinfer/track/model/thresholds.hpp"
 
 namespace kinfer::track {
 namespace {

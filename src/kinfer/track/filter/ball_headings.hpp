@@ -10,7 +10,7 @@
 
 #include <vector>
 
-#include "kinfer/track/filter/chain_state.hpp"
+#include "kinfer/track/model/chain_state.hpp"
 
 namespace kinfer::track {
 

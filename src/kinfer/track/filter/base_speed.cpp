@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "kinfer/base/square.hpp"
-#include "kinfer/track/filter/thresholds.hpp"
+#include "kinfer/track/model/thresholds.hpp"
 
 namespace kinfer::track {
 

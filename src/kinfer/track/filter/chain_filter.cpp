@@ -6,7 +6,7 @@
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/base/square.hpp"
-#include "kinfer/track/filter/thresholds.hpp"
+#include "kinfer/track/model/thresholds.hpp"
 
 namespace kinfer::track {
 namespace {
@@ -27,6 +27,7 @@ ChainFilter::ChainFilter(std::shared_ptr<const FilterModel> model)
       changes_(*model_),
       levels_(model_->sensors.size()),
       headings_(*model_),
+      limb_turns_(*model_),
       constant_faults_(*model_),
       mean_rates_(*model_),
       innovations_(*model_),
@@ -38,218 +39,12 @@ ChainFilter::ChainFilter(std::shared_ptr<const FilterModel> model)
   last_value_ = change_ = change_of_change_ = VectorXd::Zero(layout.rows());
   error_ = column_ = VectorXd::Zero(layout.size);
   unused_w_ = MatrixXd::Zero(layout.size, sensor_rows);
-  is_turn_known_.assign(model_->unknown_turns.size(), false);
-  tilted_.assign(model_->unknown_turns.size(), 0.0);
-  by_turn_ = VectorXd::Zero(layout.rows());
   bias_variance_ = VectorXd::Zero(layout.rows());
   for (Index s = 0; s < layout.sensors; ++s) {
     auto own = bias_variance_.segment<sensor_rows>(sensor_rows * s);
     own = p_.diagonal().segment<sensor_rows>(layout.sensor_state(s));
     own.head<3>().array() += square(model_->bias.rate), own.tail<3>().array() += square(model_->bias.force);
   }
-}
-
-void ChainFilter::start(const ChainState& state, ConstMatrixRef fast) {
-  const FilterLayout& layout = model_->layout;
-  KINFER_EXPECT(fast.rows() == layout.fast && fast.cols() == layout.fast);
-  ChainState before = std::move(state_);
-  state_ = state;
-  state_.sensors = std::move(before.sensors);
-  state_.start = std::move(before.start);
-  state_.turned = std::move(before.turned);
-  state_.moved = std::move(before.moved);
-  if (last_update_) let_biases_walk(state.time - *last_update_);
-  placed_ = state.time;
-  std::ranges::fill(tilted_, 0.0);
-  p_.leftCols(layout.fast).setZero();
-  p_.topRows(layout.fast).setZero();
-  p_.topLeftCorner(layout.fast, layout.fast) = fast;
-  headings_.reset();
-  mean_rates_.reset();
-  constant_faults_.by_fault().leftCols(layout.fast).setZero();
-}
-
-/// Over a gap without predictions. A first-order Gauss-Markov process differs from itself by 2σ² at most.
-void ChainFilter::let_biases_walk(double gap) {
-  const double time = std::clamp(gap, 0.0, model_->instability_time);
-  add_bias_walk(*model_, time, p_);
-  widen_bias_distance(time);
-}
-
-/// By what biases may have walked.
-void ChainFilter::widen_bias_distance(double dt) {
-  for (Index s = 0; s < model_->layout.sensors; ++s) {
-    bias_variance_.segment<3>(sensor_rows * s).array() += dt * model_->bias_walk.rate;
-    bias_variance_.segment<3>(sensor_rows * s + 3).array() += dt * model_->bias_walk.force;
-  }
-}
-
-void ChainFilter::widen(Index first, ConstMatrixRef covariance) {
-  p_.block(first, first, covariance.rows(), covariance.cols()) += covariance;
-}
-
-/// It counted from the start and will be shown by motion.
-void ChainFilter::free_heading(std::size_t body, double sd) {
-  headings_.free(body, sd, p_);
-  mirror();
-}
-
-/// The state of the zero of a revolute joint's positions; −1: it is not considered.
-Index ChainFilter::zero_state(Index position) const {
-  const auto at = std::ranges::find(model_->layout.position, position);
-  const auto b = static_cast<std::size_t>(at - model_->layout.position.begin());
-  if (b >= model_->bodies.size()) return -1;
-  const InsBody& body = model_->bodies[b];
-  if (body.motion != JointMotion::revolute || !body.free_child_rotation[2]) return -1;
-  return model_->layout.first_geometry + model_->layout.geometry[b] + body.turns() - 1;
-}
-
-void ChainFilter::forget(Index state) {
-  p_.row(state).setZero();
-  p_.col(state).setZero();
-}
-
-void ChainFilter::place(Index position, double value, double sd) {
-  const Index at = model_->layout.joint_state(position), zero = zero_state(position);
-  forget(at);
-  constant_faults_.by_fault().col(at).setZero();
-  placed_ = state_.time;
-  if (zero >= 0 && p_(zero, zero) <= 0.0)
-    p_(zero, zero) = model_->parameters(zero - model_->layout.fast, zero - model_->layout.fast);
-  state_.joints[position_states * position] = value;
-  p_(at, at) = sd * sd;
-}
-
-void ChainFilter::count_from_start(Index position, std::optional<double> stated, double sd) {
-  const UnknownZero& zero = *model_->unknown_zero(position);
-  const Index at = model_->layout.joint_state(position);
-  p_.row(zero.state) = p_.row(at);
-  p_.col(zero.state) = p_.col(at);
-  p_(zero.state, zero.state) = p_(at, at) + (stated ? sd * sd : 0.0);
-  constant_faults_.by_fault().col(zero.state) = constant_faults_.by_fault().col(at);
-  if (stated) state_.start[position] = state_.joints[position_states * position] - *stated;
-  counts_from_start_ = true;
-}
-
-void ChainFilter::turn_start(Index position, double turn, double sd, double lost_sd) {
-  const UnknownZero& zero = *model_->unknown_zero(position);
-  const Index at = model_->layout.joint_state(position);
-  state_.joints[position_states * position] += turn;
-  state_.start[position] += turn;
-  p_(at, at) += sd * sd;
-  p_(zero.state, zero.state) += sd * sd + lost_sd * lost_sd;
-  p_(at, zero.state) += sd * sd;
-  p_(zero.state, at) += sd * sd;
-  placed_ = state_.time;
-}
-
-bool ChainFilter::knows_turn(std::size_t body) const {
-  for (std::size_t k = 0; k < is_turn_known_.size(); ++k)
-    if (model_->unknown_turns[k].body == body) return is_turn_known_[k];
-  return true;
-}
-
-void ChainFilter::turn_limb(std::size_t body, double turn, double sd) {
-  const Index state = model_->unknown_turn(body)->state;
-  forget(state);
-  constant_faults_.by_fault().col(state).setZero();
-  state_.turned[static_cast<Index>(body)] += turn;
-  p_(state, state) = sd * sd;
-  free_first_joint(body, 2.0 * square(tilt_of(*model_->unknown_turn(body))));
-  for (std::size_t k = 0; k < is_turn_known_.size(); ++k)
-    if (model_->unknown_turns[k].body == body) is_turn_known_[k] = true;
-  placed_ = state_.time;
-}
-
-/// By the chord of the circle that the tilt's direction is anywhere on. `variance`: [rad²] of the angles.
-void ChainFilter::free_first_joint(std::size_t body, double variance) {
-  if (model_->bodies[body].motion == JointMotion::prismatic) return;
-  for (Index i = 0; i < degrees_of_freedom(model_->bodies[body].motion); ++i) {
-    const Index at = model_->layout.joint_state(model_->layout.position[body] + i);
-    p_(at, at) += variance;
-  }
-}
-
-void ChainFilter::forget_turn(std::size_t body) {
-  const Index state = model_->unknown_turn(body)->state;
-  forget(state);
-  constant_faults_.by_fault().col(state).setZero();
-  for (std::size_t k = 0; k < is_turn_known_.size(); ++k)
-    if (model_->unknown_turns[k].body == body) is_turn_known_[k] = false;
-}
-
-double ChainFilter::whole_tilt(const UnknownTurn& turn) const {
-  const Vec3 up = state_.world_R_base.row(2);
-  return up.cross(model_->bodies[turn.segment].parent_R_axis.col(2)).norm();
-}
-
-double ChainFilter::tilt_of(const UnknownTurn& turn) const {
-  const double least = std::max(least_tilt, tilt_sds * std::sqrt(p_.diagonal().head<3>().maxCoeff()));
-  return std::sqrt(std::max(0.0, square(whole_tilt(turn)) - square(least)));
-}
-
-bool ChainFilter::shows_turn(const UnknownTurn& turn) const {
-  const double turning = state_.joints[position_states * model_->layout.position[turn.segment] + 1],
-               tilting = state_.rate.cross(model_->bodies[turn.segment].parent_R_axis.col(2)).norm();
-  return tilt_of(turn) > 0.0 && std::max(std::abs(turning), tilting) > turn_shown;
-}
-
-/// A limb that is turned by an unknown angle sees tilt and tilting of the base from elsewhere. That is no noise, but
-/// stays as it is for long.
-void ChainFilter::widen_by_unknown_turns() {
-  by_turn_.setZero();
-  const bool is_moving = state_.base == BaseMode::moving;  // it is not level ground that seems to be tilted
-  for (std::size_t k = 0; k < is_turn_known_.size(); ++k) {
-    if (is_turn_known_[k]) continue;
-    const UnknownTurn& turn = model_->unknown_turns[k];
-    const double tilting = state_.rate.cross(model_->bodies[turn.segment].parent_R_axis.col(2)).norm(),
-                 tilt = is_moving ? whole_tilt(turn) : tilt_of(turn), more = square(tilt) - square(tilted_[k]);
-    if (more > 0.0) free_first_joint(turn.body, 2.0 * more), tilted_[k] = tilt;
-    for (const std::size_t s : turn.sensors) {
-      const Index row = sensor_rows * static_cast<Index>(s);
-      by_turn_.segment<3>(row).array() += turn_blocks * square(tilting);
-      by_turn_.segment<3>(row + 3).array() += turn_blocks * square(model_->gravity * tilt);
-    }
-  }
-}
-
-void ChainFilter::suppose(Index position, double value, double sd) {
-  const Index at = model_->layout.joint_state(position), estimated = this->estimated();
-  const double variance = p_(at, at), change = sd * sd - variance;
-  VectorXd& share = column_;
-  share = p_.col(at) / variance;
-  error_.setZero();
-  error_.head(estimated) = (value - state_.joints[position_states * position]) * share.head(estimated);
-  retract(*model_, error_, state_);
-  MatrixXd& by_fault = constant_faults_.by_fault();
-  for (Index j = 0; j < estimated; ++j)
-    if (j != at) by_fault.col(j) -= share[j] * by_fault.col(at);
-  by_fault.col(at).setZero();
-  for (Index j = 0; j < estimated; ++j)
-    for (Index i = j; i < p_.rows(); ++i) p_(i, j) += change * share[i] * share[j];
-  mirror();
-}
-
-void ChainFilter::suppose_velocity(Index position, std::size_t sensor, const Vec3& rate) {
-  evaluator_.evaluate(*model_, state_);
-  const ChainMeasurement& m = evaluator_.result();
-  const Index row = sensor_rows * static_cast<Index>(sensor), at = model_->layout.joint_state(position) + 1;
-  const Vec3 by_velocity = m.by_fast.block<3, 1>(row, at), missing = rate - m.value.segment<3>(row);
-  state_.joints[at - base_states] += by_velocity.dot(missing) / by_velocity.squaredNorm();
-}
-
-void ChainFilter::count_from_here(Index position) {
-  const UnknownZero* unknown = model_->unknown_zero(position);
-  if (state_.base == BaseMode::moving && !unknown)
-    return place(position, state_.joints[position_states * position], 0.0);
-  placed_ = state_.time;
-  const auto forget_estimated = [&](Index state) {
-    forget(state);
-    constant_faults_.by_fault().col(state).setZero();
-  };
-  forget_estimated(model_->layout.joint_state(position));
-  if (unknown) forget_estimated(unknown->state);
-  if (const Index zero = zero_state(position); zero >= 0) forget(zero);
 }
 
 void ChainFilter::predict(double time) {
@@ -331,7 +126,7 @@ void ChainFilter::form_sensor_rows(const BlockMeasurement& block, std::size_t s)
     system_.set_instrument(
         first, is_used_[s] && count > 0, innovations_.value.segment<3>(first),
         factor * block_variance(white, persistent, slow, settings.sample_period, block.length, count) + shifted +
-            by_turn_[first]);
+            limb_turns_.variance()[first]);
   };
   set(row, measured.rate_count, measured.rate_time, measured.rate, settings.white.rate, settings.persistent.rate,
       settings.slow.rate, levels_.of(s).rate);
@@ -345,7 +140,7 @@ void ChainFilter::form_rows(const BlockMeasurement& block) {
   system_.begin(evaluator_.result());
   error_.setZero();
   shown_ = ShownMeans::rates;
-  widen_by_unknown_turns();
+  limb_turns_.update(*model_, state_, p_);
   for (std::size_t s = 0; s < is_used_.size(); ++s) {
     form_sensor_rows(block, s);
     if (!is_used_[s] || block.sensors[s].rate_count == 0) shown_ = ShownMeans::accelerations;
@@ -424,7 +219,8 @@ double ChainFilter::distance_of_unused(const BlockMeasurement& block, std::size_
                force = block_variance(settings.white.force, settings.persistent.force, settings.slow.force,
                                       settings.sample_period, block.length, measured.force_count);
   for (Index i = 0; i < sensor_rows; ++i)
-    covariance(i, i) += by_turn_[row + i] + levels_.common() * (i < 3 ? rate : force) + p_(own + i, own + i) +
+    covariance(i, i) += limb_turns_.variance()[row + i] + levels_.common() * (i < 3 ? rate : force) +
+                        p_(own + i, own + i) +
                         p_.diagonal()
                             .segment<3>(own + SensorIndex::gyroscope_scale + 3 * i)
                             .dot((i < 3 ? m.angular_velocity[s] : m.force[s]).cwiseAbs2());

@@ -13,6 +13,7 @@
 #include "kinfer/track/filter/constant_faults.hpp"
 #include "kinfer/track/filter/instrument_levels.hpp"
 #include "kinfer/track/filter/joint_changes.hpp"
+#include "kinfer/track/filter/limb_turns.hpp"
 #include "kinfer/track/filter/mean_rates.hpp"
 #include "kinfer/track/filter/soft_rows.hpp"
 
@@ -81,12 +82,10 @@ class ChainFilter {
   void turn_limb(std::size_t body, double turn, double sd);
   /// Nothing is known of that.
   void forget_turn(std::size_t body);
-  bool knows_turn(std::size_t body) const;
-  /// [rad] by which the base is tilted against the axis of the segment, beyond what level ground may seem to be: the
-  /// limb depends on its turn.
-  double tilt_of(const UnknownTurn& turn) const;
-  /// Whether the tilt changes in the segment, which shows the turn of its limbs.
-  bool shows_turn(const UnknownTurn& turn) const;
+  bool knows_turn(std::size_t body) const { return limb_turns_.is_known(body); }
+  /// As of LimbTurns.
+  double tilt_of(const UnknownTurn& turn) const { return LimbTurns::tilt(*model_, state_, p_, turn); }
+  bool shows_turn(const UnknownTurn& turn) const { return LimbTurns::are_shown(*model_, state_, p_, turn); }
 
   /// Unseen points are estimated, or considered: as long as it is open where joints stand that they are multiplied
   /// with.
@@ -156,9 +155,6 @@ class ChainFilter {
   double time_since_update() const;
   Index estimated() const { return estimates_points_ ? model_->layout.first_geometry : model_->layout.first_point; }
   void follow_change();
-  double whole_tilt(const UnknownTurn& turn) const;
-  void widen_by_unknown_turns();
-  void free_first_joint(std::size_t body, double variance);
   void add_what_means_miss(double dt, const BlockMeasurement& block);
   void form_rows(const BlockMeasurement& block);
   void form_sensor_rows(const BlockMeasurement& block, std::size_t sensor);
@@ -184,6 +180,7 @@ class ChainFilter {
   JointChanges changes_;
   InstrumentLevels levels_;
   BallHeadings headings_;
+  LimbTurns limb_turns_;
   ConstantFaults constant_faults_;
   MeanRates mean_rates_;
   Innovations innovations_;
@@ -192,10 +189,7 @@ class ChainFilter {
   MatrixXd unused_w_;
   double placed_ = 0.0;
   bool counts_from_start_ = false, estimates_points_ = false;
-  std::vector<bool> is_turn_known_;  // of the model's unknown turns
-  std::vector<double> tilted_;       // [rad] of each of them: the tilt that the position of the first joint allows for
-  VectorXd by_turn_;                 // variances of the sensors' rows, by turns that are unknown
-  VectorXd bias_variance_;           // of each sensor's biases without the rows: gyroscope, accelerometer
+  VectorXd bias_variance_;  // of each sensor's biases without the rows: gyroscope, accelerometer
 };
 
 }  // namespace kinfer::track

@@ -14,8 +14,8 @@
 
 #include <array>
 
-#include "kinfer/track/filter/chain_state.hpp"
 #include "kinfer/track/filter/update_system.hpp"
+#include "kinfer/track/model/chain_state.hpp"
 
 namespace kinfer::track {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kinfer/track/filter/thresholds.hpp"
+#include "kinfer/track/model/thresholds.hpp"
 
 namespace kinfer::track {
 namespace {

@@ -10,7 +10,7 @@
 #pragma once
 
 #include "kinfer/linalg/block_products.hpp"
-#include "kinfer/track/filter/chain_measurement.hpp"
+#include "kinfer/track/model/chain_measurement.hpp"
 
 namespace kinfer::track {
 

@@ -5,7 +5,7 @@
 // but is 0.1° where a joint accelerates by 35 rad/s² in blocks of 20 ms, tenfold what noise leaves.
 #pragma once
 
-#include "kinfer/track/filter/chain_state.hpp"
+#include "kinfer/track/model/chain_state.hpp"
 
 namespace kinfer::track {
 

@@ -6,7 +6,7 @@
 
 #include "kinfer/base/square.hpp"
 #include "kinfer/linalg/small_cholesky.hpp"
-#include "kinfer/track/filter/thresholds.hpp"
+#include "kinfer/track/model/thresholds.hpp"
 
 namespace kinfer::track {
 

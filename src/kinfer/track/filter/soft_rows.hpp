@@ -6,8 +6,8 @@
 #pragma once
 
 #include "kinfer/track/filter/base_speed.hpp"
-#include "kinfer/track/filter/chain_state.hpp"
 #include "kinfer/track/filter/update_system.hpp"
+#include "kinfer/track/model/chain_state.hpp"
 
 namespace kinfer::track {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "kinfer/linalg/small_cholesky.hpp"
-#include "kinfer/track/filter/thresholds.hpp"
+#include "kinfer/track/model/thresholds.hpp"
 
 namespace kinfer::track {
 namespace {

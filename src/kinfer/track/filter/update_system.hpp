@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "kinfer/linalg/block_products.hpp"
-#include "kinfer/track/filter/chain_measurement.hpp"
+#include "kinfer/track/model/chain_measurement.hpp"
 
 namespace kinfer::track {
 

@@ -75,8 +75,8 @@ void ToolSpread::add_body(const FilterModel& model, std::size_t b) {
 }
 
 /// How the tool moves with a joint's position, or with a ball's heading.
-Eigen::Matrix<double, 6, 1> ToolSpread::unknown_turn(const FilterModel& model, const ChainState& state,
-                                                     std::size_t b) const {
+Eigen::Matrix<double, 6, 1> ToolSpread::by_unknown_position(const FilterModel& model, const ChainState& state,
+                                                            std::size_t b) const {
   const InsBody& body = model.bodies[b];
   const Vec3 axis = body.motion == JointMotion::spherical ? Vec3(state.world_R_base.transpose() * Vec3::UnitZ())
                                                           : Vec3(bodies_[b].rotation * body.child_R_axis.col(2));
@@ -106,7 +106,8 @@ void ToolSpread::spread(const FilterModel& model, const ChainState& state, const
     variance += sum.cwiseProduct(derivative_.col(j));
   }
   for (std::size_t b = 1; b < unknown.size(); ++b)
-    if (leads_to_tool_[b] && unknown[b] > 0.0) variance += (unknown[b] * unknown_turn(model, state, b)).cwiseAbs2();
+    if (leads_to_tool_[b] && unknown[b] > 0.0)
+      variance += (unknown[b] * by_unknown_position(model, state, b)).cwiseAbs2();
   variance.head<3>() += (carrier.rotation * carried_.sd).cwiseAbs2();
   position_sd_ = variance.head<3>().cwiseMax(0.0).cwiseSqrt();
   rotation_sd_ = variance.tail<3>().cwiseMax(0.0).cwiseSqrt();

@@ -27,7 +27,8 @@ class ToolSpread {
 
  private:
   void set_pose(const FilterModel& model, const ChainState& state, std::size_t b);
-  Eigen::Matrix<double, 6, 1> unknown_turn(const FilterModel& model, const ChainState& state, std::size_t b) const;
+  Eigen::Matrix<double, 6, 1> by_unknown_position(const FilterModel& model, const ChainState& state,
+                                                  std::size_t b) const;
   void add_column(Index state, const Vec3& shift, const Vec3& turn);
   void add_body(const FilterModel& model, std::size_t b);
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "kinfer/track/filter/thresholds.hpp"
+#include "kinfer/track/model/thresholds.hpp"
 
 namespace kinfer::track {
 BaseWatch::BaseWatch(const TrackingModel& model, const FilterModel& filter, std::optional<BaseMode> given)

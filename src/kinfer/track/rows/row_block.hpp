@@ -8,7 +8,7 @@
 
 #include "kinfer/measurement/ins/ins_row.hpp"
 #include "kinfer/track/filter/chain_filter.hpp"
-#include "kinfer/track/filter/thresholds.hpp"
+#include "kinfer/track/model/thresholds.hpp"
 
 namespace kinfer::track {
 

@@ -85,6 +85,13 @@ class Pass {
   double updated_ = std::numeric_limits<double>::quiet_NaN();
 };
 
+/// Both passes may have found limbs turned otherwise: the tool is that of the forward pass.
+void keep_tool(const TrackState& forward, TrackState& to) {
+  to.base_T_tool = forward.base_T_tool;
+  to.sd_tool_position = forward.sd_tool_position;
+  to.sd_tool_rotation = forward.sd_tool_rotation;
+}
+
 void notify_pass(const Observer& observer, std::string_view stage, std::size_t done, std::size_t all) {
   constexpr std::size_t every = 500;
   if (done % every == 0)
@@ -113,17 +120,13 @@ void smooth(const TrackingModel& model, const TrackOptions& options, std::span<c
   if (rows.empty()) return;
   const std::vector<PassState> backward = backward_pass(model, options.base, rows, observer);
   Pass forward(model, options);
+  const bool has_unknown_turns = !forward.tracker().filter().model().unknown_turns.empty();
   for (std::size_t i = 0; i < rows.size(); ++i) {
     notify_pass(observer, "forward pass", i + 1, rows.size());
     forward.add(rows[i]);
     TrackState state = forward.tracker().state();
-    const TrackState before = state;
     combine(model, forward.state(), backward[i], state);
-    // Both passes may have found what hangs on a segment at different places: the tool is that of the forward pass.
-    if (!forward.tracker().filter().model().unknown_turns.empty() && before.started) {
-      state.base_T_tool = before.base_T_tool;
-      state.sd_tool_position = before.sd_tool_position, state.sd_tool_rotation = before.sd_tool_rotation;
-    }
+    if (has_unknown_turns && forward.tracker().state().started) keep_tool(forward.tracker().state(), state);
     add(state);
   }
 }

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "kinfer/track/filter/thresholds.hpp"
+#include "kinfer/track/model/thresholds.hpp"
 
 namespace kinfer::track {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "kinfer/track/filter/thresholds.hpp"
+#include "kinfer/track/model/thresholds.hpp"
 #include "kinfer/track/start/thresholds.hpp"
 
 namespace kinfer::track {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/track/filter/filter_model.hpp"
+#include "kinfer/track/model/filter_model.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "kinfer/base/square.hpp"
-#include "kinfer/track/filter/thresholds.hpp"
+#include "kinfer/track/model/thresholds.hpp"
 
 namespace kinfer::track {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/track/filter/chain_measurement.hpp"
+#include "kinfer/track/model/chain_measurement.hpp"
 
 #include "kinfer/geometry/rotation_vector_motion.hpp"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/track/filter/chain_state.hpp"
+#include "kinfer/track/model/chain_state.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "kinfer/base/square.hpp"
-#include "kinfer/track/filter/thresholds.hpp"
+#include "kinfer/track/model/thresholds.hpp"
 
 namespace kinfer::track {
 namespace {

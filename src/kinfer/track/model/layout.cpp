@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/track/filter/layout.hpp"
+#include "kinfer/track/model/layout.hpp"
 
 #include <algorithm>
 

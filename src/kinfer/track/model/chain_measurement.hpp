@@ -8,7 +8,7 @@
 // sensor. Only the others are kept.
 #pragma once
 
-#include "kinfer/track/filter/chain_state.hpp"
+#include "kinfer/track/model/chain_state.hpp"
 
 namespace kinfer::track {
 

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "kinfer/evidence/tracking/tracking_model.hpp"
-#include "kinfer/track/filter/acceleration_process.hpp"
-#include "kinfer/track/filter/layout.hpp"
+#include "kinfer/track/model/acceleration_process.hpp"
+#include "kinfer/track/model/layout.hpp"
 
 namespace kinfer::track {
 

@@ -2,7 +2,7 @@
 // The state of a chain with its sensors, and how it and the covariance of its error change with time.
 #pragma once
 
-#include "kinfer/track/filter/filter_model.hpp"
+#include "kinfer/track/model/filter_model.hpp"
 
 namespace kinfer::track {
 
