@@ -22,8 +22,8 @@ inline TrackingBody random_body(int parent, int sensor, int joint, TrackingMotio
 }
 
 /// A tree: hinge, universal joint, slide, ball, fixed segment; the ball hangs beside the slide. Nothing of it is known
-/// to better than 1 rad or 1 m: the hinge's zero, the turn of its segment and all points are unseen, but for a hinge
-/// that is known.
+/// to better than 1 rad or 1 m: the hinge's zero, its axis near the vertical, the turn of its segment and all points
+/// are unseen, but for a hinge that is known.
 inline TrackingModel random_tree(Rng& rng, bool has_known_hinge = false) {
   using Kind = TrackingParameterKind;
   TrackingModel model;
@@ -56,6 +56,7 @@ inline TrackingModel random_tree(Rng& rng, bool has_known_hinge = false) {
     for (int c = 0; c < 3; ++c) model.parameters.push_back({Kind::point_in_child, b, c});
     for (int c = 0; c < 3; ++c) model.parameters.push_back({Kind::point_in_parent, b, c});
   }
+  model.base.force = standard_gravity * model.bodies[1].parent_R_axis * rot_x(0.1).col(2);
   const auto n = static_cast<Eigen::Index>(model.parameters.size());
   model.covariance = MatrixXd::Identity(n, n);
   return model;
@@ -78,6 +79,7 @@ inline track::ChainState random_state(const track::FilterModel& model, Rng& rng)
   for (const track::UnknownZero& zero : model.unknown_zeros) state.start[zero.position] = random_vector(rng).x();
   for (const track::UnknownTurn& turn : model.unknown_turns)
     state.turned[static_cast<Eigen::Index>(turn.body)] = random_vector(rng).x();
+  for (const track::UnknownAxis& axis : model.unknown_axes) state.tilted[axis.body] = exp_so3(0.3 * random_vector(rng));
   for (const track::UnknownPoint& point : model.unknown_points) state.moved[point.body] = random_vector(rng);
   return state;
 }

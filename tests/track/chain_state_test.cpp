@@ -67,6 +67,9 @@ VectorXd error_between(const FilterModel& model, const ChainState& from, const C
     e[zero.state] = to.start[zero.position] - from.start[zero.position];
   for (const UnknownTurn& turn : model.unknown_turns)
     e[turn.state] = to.turned[static_cast<Index>(turn.body)] - from.turned[static_cast<Index>(turn.body)];
+  for (const UnknownAxis& axis : model.unknown_axes)
+    e.segment<2>(axis.state) = model.bodies[axis.body].parent_R_axis.leftCols<2>().transpose() *
+                               log_so3(Mat3(from.tilted[axis.body].transpose() * to.tilted[axis.body]));
   for (const UnknownPoint& point : model.unknown_points)
     e.segment<3>(point.state) = to.moved[point.body] - from.moved[point.body];
   return e;

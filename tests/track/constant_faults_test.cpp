@@ -107,7 +107,7 @@ TEST(ConstantFaults, ABeliefDependsOnOtherFaultsByTheScoresAsTheyCount) {
   const ChainFilter start = started_filter();
   const std::vector<BlockMeasurement> rows = expected_rows(start);
   constexpr double step = 1e-6, excess = 5.0;
-  const Mat3 covariance = 1e-6 * Mat3::Identity();
+  const Mat3 covariance = 1e-4 * Mat3::Identity();
   const auto believed = [&](ChainFilter filter) {
     const Vec3 mean = covariance * filter.constant_faults().of(1).score / excess;
     filter.believe_turn(1, mean, covariance, excess);

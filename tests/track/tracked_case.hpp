@@ -37,6 +37,7 @@ inline const Case& still_excavator() {
 struct Outcome {
   Tracker tracker;
   VectorXd squares, first, largest_sd;
+  VectorXd largest_late_sd;  // after 10 s
   std::vector<bool> is_relative;
   int rows = 0;
   std::vector<TrackAlarm> alarms{};  // each kind and sensor once, with the time at which it was raised
@@ -62,6 +63,7 @@ Outcome run(const Case& given, const TrackOptions& options, Change change, doubl
               .squares = VectorXd::Zero(joints),
               .first = VectorXd::Constant(joints, no_value),
               .largest_sd = VectorXd::Zero(joints),
+              .largest_late_sd = VectorXd::Zero(joints),
               .is_relative = std::vector<bool>(static_cast<std::size_t>(joints), false)};
   InsRow row;
   for (std::size_t r = 0; r < given.drive.recording.loggers.front().time.size(); ++r) {
@@ -78,6 +80,7 @@ Outcome run(const Case& given, const TrackOptions& options, Change change, doubl
     if (!state.started) continue;
     ++out.rows;
     out.largest_sd = out.largest_sd.cwiseMax(state.sd_q);
+    if (row.time > 10.0) out.largest_late_sd = out.largest_late_sd.cwiseMax(state.sd_q);
     for (int j = 0; j < joints; ++j) {
       const auto joint = static_cast<std::size_t>(j);
       out.is_relative[joint] = state.joints[joint].reference == JointReference::start;

@@ -49,12 +49,14 @@ TEST(Tracker, FollowsAnExcavatorFromRestWithoutKnowingItsSensorsErrors) {
 }
 
 /// Alone for 17 s, a telescope is known by its acceleration only. Means of it over the rows of an update are as good as
-/// all rows: taken as single values, they let the standard deviation grow to 0.35 m.
+/// all rows: taken as single values, they let the standard deviation grow to 0.35 m. Before it has moved it may be
+/// anywhere in its range, and is stated to be.
 TEST(Tracker, ATelescopeThatMovesAloneIsFollowedByItsAcceleration) {
   const Case given = crane_with_a_telescope();
   const Outcome out = run(given, {}, unchanged);
   EXPECT_LT(out.rms(telescope), 0.05);
-  EXPECT_LT(out.largest_sd[telescope], 0.2);
+  EXPECT_LT(out.largest_late_sd[telescope], 0.2);
+  EXPECT_GT(out.largest_sd[telescope], 0.2);
 }
 
 constexpr double rest_of_drive = 3.0;  // [s] of the drive's begin

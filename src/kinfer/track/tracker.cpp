@@ -200,7 +200,7 @@ void Tracker::spread_tool() {
     unknown_[b] = is_in_grid ? 0.0 : positions_.start_sd(*model_, b);
   }
   tool_.spread(*model_, filter_.state(), filter_.covariance(), unknown_);
-  if (grid_ && model_->bodies[grid_->body()].motion != JointMotion::prismatic)
+  if (grid_)
     spread_.update(*grid_, unknown_);
   else
     spread_.clear();

@@ -38,7 +38,8 @@ void Tracker::try_start() {
   settle(posture, filter_, waiting_);
   if (!restarted_) {
     weigh_biases(posture);
-    posture = initial_posture(*model_, block, guesses_, base_.mode());
+    place_axes(initial_posture(*model_, block, guesses_, base_.mode()), block);
+    posture = initial_posture(turned_model(*model_, filter_.state()), block, guesses_, base_.mode());
     settle(posture, filter_, waiting_);
   }
   start_in(posture, filter_);
@@ -62,6 +63,26 @@ void Tracker::weigh_biases(const InitialPosture& posture) {
   model_ = std::make_shared<FilterModel>(with_power_up(*model_, change_of_biases(*model_, filter_, posture, waiting_)));
   filter_ = ChainFilter(model_);
   filter_.judge_as(before);
+}
+
+/// Axes on the base that may be anywhere on a cone are where the first rows have gravity on both sides of them, if the
+/// positions count from here: errors of the cone's size are beyond linearisation.
+void Tracker::place_axes(const InitialPosture& posture, const BlockMeasurement& block) {
+  const FilterModel& model = *model_;
+  const auto force = [&](const InsBody& body) -> std::optional<Vec3> {
+    if (body.sensor < 0 || block.sensors[static_cast<std::size_t>(body.sensor)].force_count == 0) return {};
+    const auto s = static_cast<std::size_t>(body.sensor);
+    return block.sensors[s].force - model.sensors[s].accelerometer_bias;
+  };
+  for (const UnknownAxis& axis : model.unknown_axes) {
+    const InsBody& body = model.bodies[axis.body];
+    const Index position = model.layout.position[axis.body];
+    const std::optional<Vec3> on_base = force(model.bodies.front()), beyond = force(body);
+    if (!on_base || !beyond || posture.positions[static_cast<std::size_t>(position)].is_known) continue;
+    const double q = posture.state.joints[position_states * position];
+    filter_.place_axis(axis.body, body.parent_R_axis.transpose() * *on_base,
+                       rot_z(q) * (body.child_R_axis.transpose() * *beyond));
+  }
 }
 
 void Tracker::list_wrong_starts(const InitialPosture& posture) {

@@ -51,6 +51,9 @@ void Tracker::read_out(double time) {
   for (const UnknownTurn& turn : model_->unknown_turns)
     if (filter_.knows_turn(turn.body) || filter_.tilt_of(turn) > 0.0)
       is_settled_[static_cast<std::size_t>(tracking_->bodies[turn.body].joint)] = false;
+  // Nor of how axes lie on the base.
+  for (const UnknownAxis& axis : model_->unknown_axes)
+    is_settled_[static_cast<std::size_t>(tracking_->bodies[axis.body].joint)] = false;
   state_headings();
   fusion_.apply(*tracking_, composed_, {.is_sound = is_sound_, .is_settled = is_settled_, .heading_sd = heading_sd_},
                 state_);

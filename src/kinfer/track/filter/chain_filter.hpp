@@ -77,6 +77,12 @@ class ChainFilter {
   /// stays, but for `lost_sd`, by which it has turned unseen.
   void turn_start(Index position, double turn, double sd, double lost_sd);
 
+  /// The body's axis lies on the base (UnknownAxis) such that gravity, which lies along `from` in the joint's frame
+  /// there as the state has it, lies along `to`; nothing else is known of it.
+  void place_axis(std::size_t body, const Vec3& from, const Vec3& to);
+  /// The same beyond a joint on the base that stands `turn` further on: gravity in the body stays as it is.
+  void keep_gravity(std::size_t body, double turn);
+
   /// How the limb that begins with the body is turned on its segment is known from here on: by so much more, to `sd`
   /// [rad]. The position of its first joint is as uncertain as the tilt of the base makes it.
   void turn_limb(std::size_t body, double turn, double sd);

@@ -18,6 +18,7 @@ void ChainFilter::start(const ChainState& state, ConstMatrixRef fast) {
   state_.sensors = std::move(before.sensors);
   state_.start = std::move(before.start);
   state_.turned = std::move(before.turned);
+  state_.tilted = std::move(before.tilted);
   state_.moved = std::move(before.moved);
   if (last_update_) let_biases_walk(state.time - *last_update_);
   placed_ = state.time;
@@ -104,6 +105,23 @@ void ChainFilter::turn_start(Index position, double turn, double sd, double lost
   p_(at, zero.state) += sd * sd;
   p_(zero.state, at) += sd * sd;
   placed_ = state_.time;
+}
+
+void ChainFilter::place_axis(std::size_t body, const Vec3& from, const Vec3& to) {
+  const Index first = model_->unknown_axis(body)->state;
+  const Mat3& as_modelled = model_->bodies[body].parent_R_axis;
+  state_.tilted[body] *= as_modelled * rotation_between(to, from).toRotationMatrix() * as_modelled.transpose();
+  for (Index state = first; state < first + 2; ++state) {
+    forget(state);
+    const Index slow = state - model_->layout.fast;
+    p_(state, state) = model_->parameters(slow, slow);
+  }
+}
+
+void ChainFilter::keep_gravity(std::size_t body, double turn) {
+  if (!model_->unknown_axis(body)) return;
+  const Vec3 up = state_.world_R_base.row(2), from = parent_side(*model_, state_, body).parent_R_axis.transpose() * up;
+  place_axis(body, from, rot_z(turn) * from);
 }
 
 void ChainFilter::turn_limb(std::size_t body, double turn, double sd) {

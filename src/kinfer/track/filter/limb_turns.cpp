@@ -11,19 +11,19 @@ namespace kinfer::track {
 namespace {
 
 /// Of the segment's joint, in the base.
-Vec3 axis_of(const FilterModel& model, const UnknownTurn& turn) {
-  return model.bodies[turn.segment].parent_R_axis.col(2);
+Vec3 axis_of(const FilterModel& model, const ChainState& state, const UnknownTurn& turn) {
+  return parent_side(model, state, turn.segment).parent_R_axis.col(2);
 }
 
 /// [rad] Of the base against the axis.
 double whole_tilt(const FilterModel& model, const ChainState& state, const UnknownTurn& turn) {
   const Vec3 up = state.world_R_base.row(2);
-  return up.cross(axis_of(model, turn)).norm();
+  return up.cross(axis_of(model, state, turn)).norm();
 }
 
 /// [rad/s]
 double tilting(const FilterModel& model, const ChainState& state, const UnknownTurn& turn) {
-  return state.rate.cross(axis_of(model, turn)).norm();
+  return state.rate.cross(axis_of(model, state, turn)).norm();
 }
 
 }  // namespace

@@ -95,6 +95,9 @@ void ChainEvaluator::propagate_body(const FilterModel& model, const ChainState& 
       by_fast_[b].col(layout.joint_state(layout.position[b]) + j) = derivative.by_own.col(j);
   for (Index j = 0; j < bodies_[b].unknowns(); ++j)
     by_geometry_[b].col(layout.unseen() + layout.geometry[b] + j) = derivative.by_own.col(own + j);
+  if (const UnknownAxis* axis = model.unknown_axis(b))
+    by_geometry_[b].block<9, 2>(0, axis->state - layout.first_unseen) =
+        by_geometry_[b].block<9, 2>(0, layout.unseen() + layout.geometry[b]);
   if (!bodies_[b].free_point_in_parent) return;
   auto by_point = by_geometry_[b].block<9, 3>(0, layout.unseen() + layout.geometry[b] + bodies_[b].turns());
   by_point *= side.turn;

@@ -187,6 +187,7 @@ ChainState initial_state(const FilterModel& model) {
   state.liveliness = VectorXd::Zero(layout.positions);
   state.start = VectorXd::Zero(layout.positions);
   state.turned = VectorXd::Zero(static_cast<Index>(model.bodies.size()));
+  state.tilted.assign(model.bodies.size(), Mat3::Identity());
   state.moved.assign(model.bodies.size(), Vec3::Zero());
   state.spherical.assign(model.bodies.size(), Mat3::Identity());
   for (const SensorSettings& s : model.sensors)
@@ -198,10 +199,11 @@ ParentSide parent_side(const FilterModel& model, const ChainState& state, std::s
   const InsBody& body = model.bodies[b];
   const auto parent = static_cast<std::size_t>(body.parent);
   const Vec3 point = body.point_in_parent + state.moved[b];
-  if (!model.unknown_turn(b)) return {body.parent_R_axis, point};
+  const Mat3 parent_R_axis = state.tilted[b] * body.parent_R_axis;
+  if (!model.unknown_turn(b)) return {parent_R_axis, point};
   const InsBody& segment = model.bodies[parent];
   const Mat3 turn = exp_so3(state.turned[static_cast<Index>(b)] * segment.child_R_axis.col(2));
-  return {turn * body.parent_R_axis, segment.point_in_child + turn * (point - segment.point_in_child), turn};
+  return {turn * parent_R_axis, segment.point_in_child + turn * (point - segment.point_in_child), turn};
 }
 
 FilterModel turned_model(const FilterModel& model, const ChainState& state) {
@@ -233,6 +235,9 @@ void retract(const FilterModel& model, const VectorXd& error, ChainState& state)
     rotate_spherical(model, b, turn, state);
   }
   for (const UnknownZero& zero : model.unknown_zeros) state.start[zero.position] += error[zero.state];
+  for (const UnknownAxis& axis : model.unknown_axes)
+    state.tilted[axis.body] *=
+        exp_so3(model.bodies[axis.body].parent_R_axis.leftCols<2>() * error.segment<2>(axis.state));
   for (const UnknownPoint& point : model.unknown_points) state.moved[point.body] += error.segment<3>(point.state);
   for (const UnknownTurn& turn : model.unknown_turns) state.turned[static_cast<Index>(turn.body)] += error[turn.state];
   for (std::size_t s = 0; s < state.sensors.size(); ++s) {

@@ -23,6 +23,7 @@ struct ChainState {
   VectorXd liveliness;          ///< of each joint position: mean square of q̈ over `liveliness_time`
   VectorXd start;               ///< [rad] of each joint position: subtracted from q where its zero is unknown
   VectorXd turned;              ///< [rad] of each body: its joint, about the axis of its parent's
+  std::vector<Mat3> tilted;     ///< of each body: its axis, in the frame of its parent
   std::vector<Vec3> moved;      ///< [m] of each body: its joint on its parent, from where the model has it
   std::vector<Mat3> spherical;  ///< of each body: exp(φ); the identity unless spherical
   std::vector<SensorErrors> sensors;

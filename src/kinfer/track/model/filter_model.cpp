@@ -126,7 +126,7 @@ void set_axis_sds(FilterModel& filter) {
   }
 }
 
-/// A zero that is exact by definition leaves the others as uncertain as they are.
+/// What else is uncertain together with a zero is so no longer once that is exact by definition.
 void find_unknown_zeros(FilterModel& filter) {
   const FilterLayout& layout = filter.layout;
   for (std::size_t b = 1; b < filter.bodies.size(); ++b) {
@@ -136,9 +136,37 @@ void find_unknown_zeros(FilterModel& filter) {
     if (body.motion != JointMotion::revolute || !body.free_child_rotation[2] || !is_between_sensors) continue;
     const Index slow = layout.first_geometry - layout.fast + layout.geometry[b] + body.turns() - 1;
     if (!(filter.parameters(slow, slow) > square(unknown_zero_sd))) continue;
+    const VectorXd with_zero = filter.parameters.col(slow);
+    filter.parameters -= with_zero * with_zero.transpose() / with_zero[slow];
     filter.parameters.row(slow).setZero();
     filter.parameters.col(slow).setZero();
     filter.unknown_zeros.push_back({.position = layout.position[b]});
+  }
+}
+
+/// Of a body's rotations in its parent, among the slow states.
+Index parent_rotation_state(const FilterModel& filter, std::size_t body) {
+  return filter.layout.first_geometry - filter.layout.fast + filter.layout.geometry[body];
+}
+
+/// [rad] Of an axis in the base against gravity as the identification saw it on a base that stood still.
+double cone_of(const InsBody& body, const TrackingBase& base) {
+  const Vec3 axis = body.parent_R_axis.col(2);
+  return std::atan2(axis.cross(base.force).norm(), std::abs(axis.dot(base.force)));
+}
+
+/// Of axes on the base. As the model has it the axis is on the circle that it may be anywhere on. On level ground that
+/// is small enough to be considered.
+void find_unknown_axes(FilterModel& filter, const TrackingBase& base) {
+  if (base.moved || base.force.isZero()) return;
+  for (std::size_t b = 1; b < filter.bodies.size(); ++b) {
+    const InsBody& body = filter.bodies[b];
+    if (body.parent != 0 || !filter.unknown_zero(filter.layout.position[b])) continue;
+    if (!body.free_parent_rotation[0] || !body.free_parent_rotation[1]) continue;
+    const double cone = cone_of(body, base);
+    if (cone > max_cone) continue;
+    filter.parameters.diagonal().segment<2>(parent_rotation_state(filter, b)).array() += square(cone_sds * cone);
+    if (cone > least_tilt) filter.unknown_axes.push_back({.body = b});
   }
 }
 
@@ -195,16 +223,22 @@ std::vector<std::size_t> sensors_beyond(const FilterModel& filter, std::size_t b
 }
 
 /// What the identification could not see becomes states: zeros and turns of which nothing is known before the first
-/// row, and points that are as uncertain as they were.
-void separate_unseen(FilterModel& filter) {
+/// row, and axes and points that are as uncertain as they were.
+void separate_unseen(FilterModel& filter, const TrackingBase& base) {
   find_unknown_zeros(filter);
+  find_unknown_axes(filter, base);
   find_unknown_turns(filter);
   find_unknown_points(filter);
-  const auto angles = static_cast<Index>(filter.unknown_zeros.size() + filter.unknown_turns.size()),
+  const auto single = static_cast<Index>(filter.unknown_zeros.size() + filter.unknown_turns.size()),
+             angles = single + 2 * static_cast<Index>(filter.unknown_axes.size()),
              points = 3 * static_cast<Index>(filter.unknown_points.size());
   const Index sensors = filter.layout.first_unseen - filter.layout.fast, before = filter.parameters.rows();
   std::vector<Index> to;
   for (Index i = 0; i < before; ++i) to.push_back(i < sensors ? i : i + angles + points);
+  for (std::size_t k = 0; k < filter.unknown_axes.size(); ++k)
+    for (Index i = 0; i < 2; ++i)
+      to[static_cast<std::size_t>(parent_rotation_state(filter, filter.unknown_axes[k].body) + i)] =
+          sensors + single + 2 * static_cast<Index>(k) + i;
   for (std::size_t k = 0; k < filter.unknown_points.size(); ++k)
     for (Index i = 0; i < 3; ++i)
       to[static_cast<std::size_t>(point_state(filter, filter.unknown_points[k].body) + i)] =
@@ -219,6 +253,7 @@ void separate_unseen(FilterModel& filter) {
     turn.state = state++;
     turn.sensors = sensors_beyond(filter, turn.body);
   }
+  for (UnknownAxis& axis : filter.unknown_axes) axis.state = std::exchange(state, state + 2);
   for (UnknownPoint& point : filter.unknown_points) point.state = std::exchange(state, state + 3);
 }
 
@@ -326,6 +361,11 @@ const UnknownTurn* FilterModel::unknown_turn(std::size_t body) const {
   return at == unknown_turns.end() ? nullptr : &*at;
 }
 
+const UnknownAxis* FilterModel::unknown_axis(std::size_t body) const {
+  const auto at = std::ranges::find(unknown_axes, body, &UnknownAxis::body);
+  return at == unknown_axes.end() ? nullptr : &*at;
+}
+
 const UnknownPoint* FilterModel::unknown_point(std::size_t body) const {
   const auto at = std::ranges::find(unknown_points, body, &UnknownPoint::body);
   return at == unknown_points.end() ? nullptr : &*at;
@@ -351,7 +391,7 @@ FilterModel filter_model(const TrackingModel& model) {
   filter.bias = model.prior.bias;
   filter.parameters = slow_covariance(filter, model);
   set_bias_changes(filter, model.prior);
-  separate_unseen(filter);
+  separate_unseen(filter, model.base);
   set_axis_sds(filter);
   return filter;
 }

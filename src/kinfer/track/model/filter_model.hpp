@@ -59,6 +59,14 @@ struct UnknownTurn {
   std::vector<std::size_t> sensors{};  ///< of the limb
 };
 
+/// The axis, in the base, of a joint whose zero is unknown. On a base that stood still all beyond the joint may be
+/// turned about gravity as it was then: an axis that was not upright lies anywhere on a cone. Two states, about the
+/// first two axes of the joint's frame on the base. With the zero exact by definition, they take up the turn as well.
+struct UnknownAxis {
+  std::size_t body = 0;
+  Index state = 0;  ///< the first
+};
+
 /// Where a joint sits on its parent, of which the identification knows next to nothing: on a base that stood still, or
 /// along an upright axis. A base that rocks shows it. Three states.
 struct UnknownPoint {
@@ -82,6 +90,7 @@ struct FilterModel {
   std::vector<RevoluteBetweenSensors> revolute;
   std::vector<UnknownZero> unknown_zeros;
   std::vector<UnknownTurn> unknown_turns;
+  std::vector<UnknownAxis> unknown_axes;
   std::vector<UnknownPoint> unknown_points;
   std::vector<JointBranch> joints;  ///< of each joint of the tracking model
   double gravity = standard_gravity;
@@ -97,6 +106,8 @@ struct FilterModel {
   const UnknownZero* unknown_zero(Index position) const;
   /// Nothing where it is known how the limb that begins with the body is turned on its segment.
   const UnknownTurn* unknown_turn(std::size_t body) const;
+  /// Nothing where the axis of the body's joint is known in the base.
+  const UnknownAxis* unknown_axis(std::size_t body) const;
   /// Nothing where it is known where the body's joint sits on its parent.
   const UnknownPoint* unknown_point(std::size_t body) const;
 };

@@ -5,8 +5,8 @@
 //   base     attitude θ (R ← R exp(θ)), ω, α in the base sensor's frame; velocity, acceleration in the world
 //   joints   of each joint position q, q̇, q̈; of a spherical joint three rotations (Q ← Q exp(φ)) with their rates
 //   sensors  b_g, b_a, S_g, S_a of each, the matrices row by row
-//   unseen   what the identification could not see: starts of positions with unknown zeros, turns of segments,
-//            points on the base and on segments
+//   unseen   what the identification could not see: starts of positions with unknown zeros, turns of limbs,
+//            axes on the base, points on the base and on segments
 //   geometry the free unknowns of each body, in the order of InsBody
 #pragma once
 

@@ -60,12 +60,15 @@ void ToolSpread::add_body(const FilterModel& model, std::size_t b) {
     const Vec3 axis = parent * segment.child_R_axis.col(2);
     add_column(turned->state, axis.cross(tool_.position - before * segment.point_in_child), axis);
   }
+  const auto turn_in_parent = [&](Index state, Index i) {
+    const Vec3 axis = parent * side.parent_R_axis.col(i);
+    add_column(state, axis.cross(parent_arm), axis);
+  };
+  if (const UnknownAxis* tilted = model.unknown_axis(b))
+    for (Index i = 0; i < 2; ++i) turn_in_parent(tilted->state + i, i);
   Index state = model.layout.first_geometry + model.layout.geometry[b];
   for (Index i = 0; i < 3; ++i)
-    if (body.free_parent_rotation[static_cast<std::size_t>(i)]) {
-      const Vec3 axis = parent * side.parent_R_axis.col(i);
-      add_column(state++, axis.cross(parent_arm), axis);
-    }
+    if (body.free_parent_rotation[static_cast<std::size_t>(i)]) turn_in_parent(state++, i);
   for (Index i = 0; i < 3; ++i)
     if (body.free_child_rotation[static_cast<std::size_t>(i)]) turn(state++, -axes.col(i));
   if (body.free_point_in_parent)

@@ -33,6 +33,7 @@ StartGrid StartGrid::around(const ChainFilter& filter, std::size_t body, const K
       candidate.filter.turn_start(grid.position_, turn, 0.5 * step, known.lost_sd);
     else
       candidate.filter.place(grid.position_, q + turn, 0.5 * step);
+    candidate.filter.keep_gravity(body, turn);
     if (was_known) candidate.log_weight = -0.5 * square(turn / std::max(known.start_sd, 0.5 * step));
   }
   grid.candidates_.front().is_stated = true;
