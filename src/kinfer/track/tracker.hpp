@@ -80,6 +80,8 @@ class Tracker {
   bool shows_points() const;
   std::size_t first_unknown_limb() const;
   void begin_grid(double share = 1.0);
+  void widen_by_places();
+  void begin_grid_along(std::size_t body);
   void spread_tool();
   void widen_unknown();
   void leave_out(std::size_t sensor, double log_odds_of_turn);

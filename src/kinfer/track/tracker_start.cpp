@@ -169,19 +169,40 @@ std::size_t Tracker::first_unknown_limb() const {
   return 0;
 }
 
+/// A grid along a joint that gives way to another one: the position is as uncertain as its places are.
+void Tracker::widen_by_places() {
+  if (!grid_) return;
+  const Index state = model_->layout.joint_state(grid_->position());
+  filter_.widen(state, MatrixXd::Constant(1, 1, grid_->variance() - filter_.covariance()(state, state)));
+}
+
+/// Where it may be: anywhere in its range, or near where motion has shown it to be, if that is less.
+void Tracker::begin_grid_along(std::size_t body) {
+  place_fits_.reset();
+  const Index position = model_->layout.position[body], state = model_->layout.joint_state(position);
+  PositionGuess guess = guesses_[static_cast<std::size_t>(position)];
+  const double reach = 3.0 * std::sqrt(filter_.covariance()(state, state));
+  if (reach < guess.sd) guess.value = filter_.state().joints[position_states * position], guess.sd = reach;
+  if (2.0 * guess.sd < prismatic_step)
+    positions_.decide(*model_, body);
+  else
+    grid_ = StartGrid::along(filter_, body, guess);
+}
+
 /// Of the first joint position that motion shows from now on, or `share` of certain motion. A revolute one goes before
 /// one along a joint: while it stands where it does by chance, a filter that believes in it is soon beyond repair.
 void Tracker::begin_grid(double share) {
   if (grid_ && model_->bodies[grid_->body()].motion == JointMotion::revolute) return;
   const auto is_told = [&](std::size_t b) { return motion_.tells_of(*model_, b, share); };
-  if (const std::size_t turns = positions_.first_open(*model_, JointMotion::revolute, is_told); turns > 0)
+  if (const std::size_t turns = positions_.first_open(*model_, JointMotion::revolute, is_told); turns > 0) {
+    widen_by_places();
     grid_ = StartGrid::around(filter_, turns, positions_[static_cast<std::size_t>(model_->layout.position[turns])]);
-  else if (const std::size_t limb = first_unknown_limb(); limb > 0)
+  } else if (const std::size_t limb = first_unknown_limb(); limb > 0) {
+    widen_by_places();
     grid_ = StartGrid::of_limb(filter_, limb);
-  else if (const std::size_t slides = positions_.first_open(*model_, JointMotion::prismatic, is_told);
-           slides > 0 && !grid_) {
-    place_fits_.reset();
-    grid_ = StartGrid::along(filter_, slides, guesses_[static_cast<std::size_t>(model_->layout.position[slides])]);
+  } else if (const std::size_t slides = positions_.first_open(*model_, JointMotion::prismatic, is_told);
+             slides > 0 && !grid_) {
+    begin_grid_along(slides);
   }
 }
 

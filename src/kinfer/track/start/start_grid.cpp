@@ -146,6 +146,10 @@ const ChainFilter& StartGrid::stated() const {
   return std::ranges::find_if(candidates_, &Candidate::is_stated)->filter;
 }
 
+double StartGrid::variance() const {
+  return variance_about(*std::ranges::find_if(candidates_, &Candidate::is_stated));
+}
+
 double StartGrid::value(const ChainFilter& filter) const {
   return is_of_limb_ ? filter.state().turned[static_cast<Index>(body_)]
                      : filter.state().joints[position_states * position_];

@@ -30,6 +30,8 @@ class StartGrid {
   /// `tells`: what the sensors show depends on the position.
   void update(const BlockMeasurement& block, bool tells);
 
+  /// Of what is sought about where the stated filter has it [rad²] or [m²].
+  double variance() const;
   /// Of the places by their probabilities [nat]: its exponential is how many are left.
   double entropy() const;
   /// [s] since when nothing has.
