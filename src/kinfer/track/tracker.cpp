@@ -185,11 +185,11 @@ void Tracker::replay(const std::function<void(ChainFilter&)>& prepare) {
   if (return_.is_waiting()) return_.begin_again(filter_);
 }
 
-/// A base that begins to move looks like a fault of sensors at first.
+/// A base that begins to move looks like a fault of sensors or of a joint on it at first.
 bool Tracker::base_begins_to_move(const BlockMeasurement& block, const Suspect& suspect) {
   if (filter_.state().base == BaseMode::moving) return false;
   base_.add(block, filter_);
-  if (suspect.sensor >= 0) base_.suspect(filter_);
+  if (suspect != Suspect{}) base_.suspect(filter_);
   return base_.mode() == BaseMode::moving;
 }
 

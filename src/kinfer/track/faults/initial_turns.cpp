@@ -100,7 +100,9 @@ std::optional<InitialTurn> initial_turn(const ChainFilter& filter) {
   FaultBelief best;
   std::size_t likeliest = faults.size();
   double next = 0.0;
+  const int base_sensor = filter.model().bodies.front().sensor;
   for (std::size_t f = 0; f < faults.size(); ++f) {
+    if (static_cast<int>(f) == base_sensor && filter.model().has_cone) continue;
     const FaultBelief other = belief_in(f, filter);
     next = std::max(next, std::min(best.explains, other.explains));
     if (other.explains > best.explains) best = other, likeliest = f;

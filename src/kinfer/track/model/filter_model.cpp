@@ -155,8 +155,7 @@ double cone_of(const InsBody& body, const TrackingBase& base) {
   return std::atan2(axis.cross(base.force).norm(), std::abs(axis.dot(base.force)));
 }
 
-/// Of axes on the base. As the model has it the axis is on the circle that it may be anywhere on. On level ground that
-/// is small enough to be considered.
+/// Of axes on the base. As the model has it the axis is on the circle that it may be anywhere on.
 void find_unknown_axes(FilterModel& filter, const TrackingBase& base) {
   if (base.moved || base.force.isZero()) return;
   for (std::size_t b = 1; b < filter.bodies.size(); ++b) {
@@ -166,7 +165,8 @@ void find_unknown_axes(FilterModel& filter, const TrackingBase& base) {
     const double cone = cone_of(body, base);
     if (cone > max_cone) continue;
     filter.parameters.diagonal().segment<2>(parent_rotation_state(filter, b)).array() += square(cone_sds * cone);
-    if (cone > least_tilt) filter.unknown_axes.push_back({.body = b});
+    filter.has_cone |= cone > least_tilt;
+    if (cone > considered_cone) filter.unknown_axes.push_back({.body = b});
   }
 }
 

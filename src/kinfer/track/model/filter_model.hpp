@@ -60,8 +60,9 @@ struct UnknownTurn {
 };
 
 /// The axis, in the base, of a joint whose zero is unknown. On a base that stood still all beyond the joint may be
-/// turned about gravity as it was then: an axis that was not upright lies anywhere on a cone. Two states, about the
-/// first two axes of the joint's frame on the base. With the zero exact by definition, they take up the turn as well.
+/// turned about gravity as it was then: an axis that was not upright lies anywhere on a cone, which is considered where
+/// it is narrow, and estimated else. Two states, about the first two axes of the joint's frame on the base. With the
+/// zero exact by definition, they take up the turn as well.
 struct UnknownAxis {
   std::size_t body = 0;
   Index state = 0;  ///< the first
@@ -91,6 +92,7 @@ struct FilterModel {
   std::vector<UnknownZero> unknown_zeros;
   std::vector<UnknownTurn> unknown_turns;
   std::vector<UnknownAxis> unknown_axes;
+  bool has_cone = false;  ///< an axis on the base may be anywhere on one: a turn of the base's sensor looks alike
   std::vector<UnknownPoint> unknown_points;
   std::vector<JointBranch> joints;  ///< of each joint of the tracking model
   double gravity = standard_gravity;
