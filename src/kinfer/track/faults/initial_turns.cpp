@@ -73,12 +73,15 @@ FaultBelief belief(const ConstantFaults& faults, std::size_t fault, double usual
 }
 
 /// [rad] that a turn usually seems to be: what the identification left unexplained, as a direction of gravity, and
-/// where gravity keeps its direction in the sensor's frame the bias of its accelerometer, which shows as the same.
+/// where gravity keeps its direction in the sensor's frame the bias of its accelerometer, which shows as the same; of
+/// the base's sensor what axes on the base may be off.
 double usual_turn(const ChainFilter& filter, std::size_t sensor) {
   const FilterModel& model = filter.model();
   const double scatter = filter.constant_faults().force_scatter(sensor),
-               by_bias = model.bias.force / (1.0 + square(scatter / bias_is_told));
-  return std::hypot(least_usual_turn, model.sensors[sensor].persistent.force / model.gravity, by_bias / model.gravity);
+               by_bias = model.bias.force / (1.0 + square(scatter / bias_is_told)),
+               by_axes = model.sensors[sensor].body == 0 ? model.cone_sd : 0.0;
+  return std::hypot(least_usual_turn, by_axes,
+                    std::hypot(model.sensors[sensor].persistent.force, by_bias) / model.gravity);
 }
 
 FaultBelief belief_in(std::size_t fault, const ChainFilter& filter) {
@@ -100,9 +103,7 @@ std::optional<InitialTurn> initial_turn(const ChainFilter& filter) {
   FaultBelief best;
   std::size_t likeliest = faults.size();
   double next = 0.0;
-  const int base_sensor = filter.model().bodies.front().sensor;
   for (std::size_t f = 0; f < faults.size(); ++f) {
-    if (static_cast<int>(f) == base_sensor && filter.model().has_cone) continue;
     const FaultBelief other = belief_in(f, filter);
     next = std::max(next, std::min(best.explains, other.explains));
     if (other.explains > best.explains) best = other, likeliest = f;

@@ -165,7 +165,7 @@ void find_unknown_axes(FilterModel& filter, const TrackingBase& base) {
     const double cone = cone_of(body, base);
     if (cone > max_cone) continue;
     filter.parameters.diagonal().segment<2>(parent_rotation_state(filter, b)).array() += square(cone_sds * cone);
-    filter.has_cone |= cone > least_tilt;
+    filter.cone_sd = std::max(filter.cone_sd, cone_sds * cone);
     if (cone > considered_cone) filter.unknown_axes.push_back({.body = b});
   }
 }

@@ -92,7 +92,7 @@ struct FilterModel {
   std::vector<UnknownZero> unknown_zeros;
   std::vector<UnknownTurn> unknown_turns;
   std::vector<UnknownAxis> unknown_axes;
-  bool has_cone = false;  ///< an axis on the base may be anywhere on one: a turn of the base's sensor looks alike
+  double cone_sd = 0.0;  ///< [rad] of axes on the base that may be anywhere on cones: a turn of its sensor looks alike
   std::vector<UnknownPoint> unknown_points;
   std::vector<JointBranch> joints;  ///< of each joint of the tracking model
   double gravity = standard_gravity;

@@ -89,14 +89,15 @@ AxisSd axis_sd(const FilterModel& model, std::size_t b) {
     return std::sqrt(variance);
   };
   AxisSd sd;
-  const UnknownAxis* unknown = model.unknown_axis(b);
-  if (!unknown && body.free_parent_rotation[0] && body.free_parent_rotation[1])
+  if (body.free_parent_rotation[0] && body.free_parent_rotation[1])
     sd.on_cone = sd_of_line(model.parameters.block<2, 2>(at, at));
   sd.in_parent = next(body.free_parent_rotation);
-  if (unknown) {
+  if (const UnknownAxis* unknown = model.unknown_axis(b)) {
     const Index first = unknown->state - model.layout.fast;
-    sd.in_parent = sd.on_cone = std::sqrt(model.parameters.diagonal().segment<2>(first).maxCoeff());
+    sd.in_parent = std::sqrt(model.parameters.diagonal().segment<2>(first).maxCoeff());
   }
+  if (body.parent == 0 && model.cone_sd > 0.0 && model.unknown_zero(model.layout.position[b]))
+    sd.on_cone = sd.in_parent;
   sd.in_child = next(body.free_child_rotation);
   return sd;
 }
