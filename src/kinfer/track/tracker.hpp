@@ -59,7 +59,7 @@ class Tracker {
   void forget_state();
   void wait_for_start();
   void try_start();
-  void place_axes(const InitialPosture& posture, const BlockMeasurement& block);
+  void place_axes(const BlockMeasurement& block);
   void weigh_biases(const InitialPosture& posture);
   void list_wrong_starts(const InitialPosture& posture);
   void process_block(const BlockMeasurement& block);

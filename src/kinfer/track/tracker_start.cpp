@@ -38,7 +38,7 @@ void Tracker::try_start() {
   settle(posture, filter_, waiting_);
   if (!restarted_) {
     weigh_biases(posture);
-    place_axes(initial_posture(*model_, block, guesses_, base_.mode()), block);
+    place_axes(block);
     posture = initial_posture(turned_model(*model_, filter_.state()), block, guesses_, base_.mode());
     settle(posture, filter_, waiting_);
   }
@@ -67,8 +67,10 @@ void Tracker::weigh_biases(const InitialPosture& posture) {
 
 /// Axes on the base that may be anywhere on a cone are where the first rows have gravity on both sides of them, if the
 /// positions count from here: errors of the cone's size are beyond linearisation.
-void Tracker::place_axes(const InitialPosture& posture, const BlockMeasurement& block) {
+void Tracker::place_axes(const BlockMeasurement& block) {
   const FilterModel& model = *model_;
+  if (model.unknown_axes.empty()) return;
+  const InitialPosture posture = initial_posture(model, block, guesses_, base_.mode());
   const auto force = [&](const InsBody& body) -> std::optional<Vec3> {
     if (body.sensor < 0 || block.sensors[static_cast<std::size_t>(body.sensor)].force_count == 0) return {};
     const auto s = static_cast<std::size_t>(body.sensor);

@@ -35,8 +35,8 @@ struct ChainState {
 /// At rest at joint position 0 with the sensors' errors of the model.
 ChainState initial_state(const FilterModel& model);
 
-/// Where a body's joint sits in the frame of its parent, A and p, and by which both are turned against the model's:
-/// about the axis as the model has it, which is off by less than a milliradian.
+/// Where a body's joint sits in the frame of its parent, A and p, and by which the limb's turn rotates both against the
+/// model's: about the axis as the model has it, which is off by less than a milliradian.
 struct ParentSide {
   Mat3 parent_R_axis;
   Vec3 point_in_parent;

@@ -164,9 +164,11 @@ void find_unknown_axes(FilterModel& filter, const TrackingBase& base) {
     if (!body.free_parent_rotation[0] || !body.free_parent_rotation[1]) continue;
     const double cone = cone_of(body, base);
     if (cone > max_cone) continue;
-    filter.parameters.diagonal().segment<2>(parent_rotation_state(filter, b)).array() += square(cone_sds * cone);
-    filter.cone_sd = std::max(filter.cone_sd, cone_sds * cone);
-    if (cone > considered_cone) filter.unknown_axes.push_back({.body = b});
+    const bool is_estimated = cone > considered_cone;
+    const double sd = (is_estimated ? estimated_cone_sds : considered_cone_sds) * cone;
+    filter.parameters.diagonal().segment<2>(parent_rotation_state(filter, b)).array() += sd * sd;
+    filter.cone_sd = std::max(filter.cone_sd, sd);
+    if (is_estimated) filter.unknown_axes.push_back({.body = b});
   }
 }
 

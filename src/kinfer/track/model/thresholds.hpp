@@ -80,10 +80,13 @@ inline constexpr int change_rows = 6;             ///< of a joint's change: angu
 /// arms identified on level ground have 2.7 and more, those identified on a slope of 3 degrees 0.02.
 inline constexpr double unknown_zero_sd = 0.35;
 /// Of the direction in the base of an axis that may be anywhere on a cone, in each direction: standard deviation over
-/// the cone's angle. The angle [rad] up to which that is considered, and up to which the axis is estimated. Excavators,
-/// arms, trees and cranes of another simulator with cones of 1.5, 3 and 8 degrees; rocking machines 71 to 75 of our own
-/// with cones of 0.6 degrees: where they were estimated, three false alarms in 30 drives.
-inline constexpr double cone_sds = 1.5, considered_cone = 0.07, max_cone = 0.35;
+/// the cone's angle where it is considered (the circle's second moment about one of its places) and where it is
+/// estimated. The angle [rad] up to which it is considered, and up to which it is estimated. Excavators, arms, trees
+/// and cranes of another simulator with cones of 1.5, 3 and 8 degrees; rocking machines 71 to 75 of our own with cones
+/// of 0.6 degrees: where they were estimated, three false alarms in 30 drives; considered with 1.5, a crane's sensors
+/// that turned by 0.5 and 1.5 degrees were named late or not.
+inline constexpr double considered_cone_sds = 1.0, estimated_cone_sds = 1.5;
+inline constexpr double considered_cone = 0.07, max_cone = 0.35;
 /// [m] A point known no better than this is estimated: its products with accelerations are beyond linearisation. Points
 /// that an identification on a still base saw are known to millimetres, the others to 1 m and more.
 inline constexpr double unknown_point_sd = 0.2;
